@@ -1,0 +1,47 @@
+// A rig is what one measures with: here the camera and whatever shows the stimuli.
+#ifndef EYEBOX_CAPTURE_CAMERA_RIG_H_
+#define EYEBOX_CAPTURE_CAMERA_RIG_H_
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "capture/base/capture_spec.h"
+#include "capture/base/clock.h"
+#include "capture/camera/camera.h"
+
+namespace eyebox::capture {
+
+// Puts the scene of a capture before the camera and returns once it is there. The simulator draws
+// it, a replay seeks to it; with hardware the experimenter's script does it.
+class StimulusPresenter {
+ public:
+  virtual ~StimulusPresenter() = default;
+  // Errors: NotFound (a replay that holds no such capture), Unavailable, Cancelled.
+  virtual absl::Status Present(const CaptureSpec& spec) = 0;
+};
+
+struct RigConfig {
+  std::string name;        // resource name, [a-z0-9-]
+  std::string camera_uri;  // "sim:NAME" or "replay:DIR"; see CameraSchemes()
+  uint64_t seed = 1;       // of everything random in a simulated rig
+};
+
+// Camera and presenter may share state (a simulated headset), which lives as long as either.
+struct Rig {
+  RigConfig config;
+  std::unique_ptr<Camera> camera;
+  std::unique_ptr<StimulusPresenter> presenter;
+};
+
+// Opens what the URI names. `clock` must outlive the rig.
+// Errors: InvalidArgument (unknown scheme: lists the known ones), NotFound, Unavailable.
+absl::StatusOr<Rig> OpenRig(const RigConfig& config, const Clock* clock);
+
+// "sim", "replay", ... in the order in which `eyebox devices` lists them.
+std::vector<std::string> CameraSchemes();
+
+}  // namespace eyebox::capture
+
+#endif  // EYEBOX_CAPTURE_CAMERA_RIG_H_

@@ -1,0 +1,50 @@
+// Writes a recording that survives kill -9: what was acknowledged is on stable storage, bit-exact,
+// in files that any HDF5 reader opens. The form is written down in proto/README.md.
+#ifndef EYEBOX_CAPTURE_RECORDING_WRITER_H_
+#define EYEBOX_CAPTURE_RECORDING_WRITER_H_
+
+#include <filesystem>
+#include <memory>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "capture/base/clock.h"
+#include "capture/base/frame.h"
+#include "capture/recording/header.h"
+
+namespace eyebox::capture {
+
+// One capture file while it is being filled. Destroyed before Publish(), it leaves its .partial.
+class CaptureWriter {
+ public:
+  virtual ~CaptureWriter() = default;
+  // Writes pixels and record at their place. Not yet durable.
+  // Errors: InvalidArgument (frame of another size, more frames than announced),
+  // FailedPrecondition (the frame is not complete: it is not data), the errno of the disk.
+  virtual absl::Status Append(const Frame& frame) = 0;
+  // One fdatasync: everything appended so far is on stable storage when this returns OK.
+  // After an error the file is abandoned: a failed fsync is never retried.
+  virtual absl::Status Acknowledge() = 0;
+  // fsync, rename to its final name, fsync of the folder, entry in the manifest.
+  // Errors: FailedPrecondition (fewer frames than announced or some unacknowledged).
+  virtual absl::Status Publish() = 0;
+};
+
+// Not thread-safe. One capture is open at a time.
+class RecordingWriter {
+ public:
+  // Creates the folder (which must not exist or be empty) and its header, and opens the manifest.
+  // `clock` must outlive the writer. Errors: AlreadyExists, the errno of the file system.
+  static absl::StatusOr<std::unique_ptr<RecordingWriter>> Create(
+      const std::filesystem::path& recording, const RecordingHeader& header, const Clock* clock);
+  virtual ~RecordingWriter() = default;
+
+  // Reserves the space of `spec.repeats` frames before the first one.
+  // Errors: ResourceExhausted (disk full; says how much is needed and free).
+  virtual absl::StatusOr<std::unique_ptr<CaptureWriter>> BeginCapture(const CaptureSpec& spec,
+                                                                      ImageSize frame_size) = 0;
+};
+
+}  // namespace eyebox::capture
+
+#endif  // EYEBOX_CAPTURE_RECORDING_WRITER_H_

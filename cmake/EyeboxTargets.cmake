@@ -1,0 +1,47 @@
+# Two helpers, so that every library and every test is declared the same way.
+#
+#   eyebox_library(NAME name SOURCES ... [PUBLIC ...] [PRIVATE ...])
+#   eyebox_test(NAME name SOURCES ... [LIBRARIES ...] [LABELS ...])
+#
+# PUBLIC is for libraries whose types stand in our headers; everything else links
+# PRIVATE, which keeps HDF5, Ceres and gRPC invisible outside their folder.
+
+find_program(EYEBOX_CCACHE ccache)
+if(EYEBOX_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${EYEBOX_CCACHE})
+endif()
+
+add_library(eyebox_options INTERFACE)
+target_include_directories(eyebox_options INTERFACE ${PROJECT_SOURCE_DIR})
+# No contraction: the same source gives the same bits whatever the optimiser picks.
+target_compile_options(eyebox_options INTERFACE -Wall -Wextra -Wshadow -Wconversion
+                       -Wno-sign-conversion -Werror=return-type -ffp-contract=off)
+if(EYEBOX_SANITIZER STREQUAL "address")
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined)
+  add_link_options(-fsanitize=address,undefined)
+elseif(EYEBOX_SANITIZER STREQUAL "thread")
+  add_compile_options(-fsanitize=thread)
+  add_link_options(-fsanitize=thread)
+endif()
+
+function(eyebox_library)
+  cmake_parse_arguments(ARG "" "NAME" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  add_library(${ARG_NAME} STATIC ${ARG_SOURCES})
+  target_link_libraries(${ARG_NAME} PUBLIC ${ARG_PUBLIC} PRIVATE eyebox_options ${ARG_PRIVATE})
+  target_include_directories(${ARG_NAME} PUBLIC ${PROJECT_SOURCE_DIR})
+endfunction()
+
+function(eyebox_test)
+  cmake_parse_arguments(ARG "" "NAME" "SOURCES;LIBRARIES;LABELS" ${ARGN})
+  if(NOT EYEBOX_BUILD_TESTS)
+    return()
+  endif()
+  add_executable(${ARG_NAME} ${ARG_SOURCES})
+  target_link_libraries(${ARG_NAME} PRIVATE eyebox_options ${ARG_LIBRARIES}
+                        GTest::gmock GTest::gtest_main)
+  target_compile_definitions(${ARG_NAME} PRIVATE
+                             EYEBOX_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+                             EYEBOX_BINARY_DIR="${CMAKE_BINARY_DIR}")
+  gtest_discover_tests(${ARG_NAME} DISCOVERY_TIMEOUT 60
+                       PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 300)
+endfunction()

@@ -1,0 +1,57 @@
+// The whole way from a recording to proven tables; pipeline.cc reads as the paragraph of the method.
+#ifndef EYEBOX_SERVICE_PIPELINE_H_
+#define EYEBOX_SERVICE_PIPELINE_H_
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "capture/camera/rig.h"
+#include "eyebox/v1/results.pb.h"
+
+namespace eyebox::service {
+
+struct Progress {
+  double fraction = 0;  // 0 to 1, never falls
+  std::string step;     // in words, for a person
+};
+
+// Called from the thread that computes. `progress` may be empty. `cancelled` is asked between
+// frames and steps; true ends the work with Cancelled.
+struct Watcher {
+  std::function<void(const Progress&)> progress;
+  std::function<bool()> cancelled;
+};
+
+struct RunOptions {
+  int hdrp_cube_size = 32;  // 2 to 129
+  int pps_strip_size = 32;  // 2 to 32
+};
+
+// Reduces, maps, fits, designs and certifies, and writes into `out` (created if missing):
+// uniformity.json, activation.json, linearize.cube, linearize.png, result.json, report.html and
+// the maps as NPY. The files depend on the recording's content and the options alone: no time,
+// no path, no host. A file appears whole or not at all.
+// Errors: those of the recording (NotFound, DataLoss, InvalidArgument), FailedPrecondition (the
+// recording cannot give what was asked: says what to record), Cancelled, the errno of the disk.
+absl::StatusOr<v1::RunResult> RunRecording(const std::filesystem::path& recording,
+                                           const std::filesystem::path& out,
+                                           const RunOptions& options, const Watcher& watcher);
+
+// Captures the default grey plan of `rig` into `recording` (which must not exist), then as above.
+// Errors: also Unavailable (device).
+absl::StatusOr<v1::RunResult> RunRig(const capture::RigConfig& rig,
+                                     const std::filesystem::path& recording,
+                                     const std::filesystem::path& out, const RunOptions& options,
+                                     const Watcher& watcher);
+
+// Shows the captures of `recording` to the replay camera and records them again, then as above.
+absl::StatusOr<v1::RunResult> ReplayRecording(const std::filesystem::path& recording,
+                                              const std::filesystem::path& replayed,
+                                              const std::filesystem::path& out,
+                                              const RunOptions& options, const Watcher& watcher);
+
+}  // namespace eyebox::service
+
+#endif  // EYEBOX_SERVICE_PIPELINE_H_

@@ -1,0 +1,46 @@
+// A command of the binary: its options are bound while parsing, its work runs afterwards.
+#ifndef EYEBOX_SERVICE_CLI_COMMAND_H_
+#define EYEBOX_SERVICE_CLI_COMMAND_H_
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "absl/status/status.h"
+
+namespace eyebox::service::cli {
+
+// What the parsed command line asks for; main() runs it once parsing is over.
+using Work = std::function<absl::Status()>;
+
+// Adds a subcommand whose options live in `Options` until its work has run. `bind` declares the
+// options on the subcommand, `run` does the work.
+template <typename Options, typename Bind, typename Run>
+void AddCommand(CLI::App& app, Work& work, const std::string& name, const std::string& description,
+                const std::string& example, Bind bind, Run run) {
+  CLI::App* command = app.add_subcommand(name, description);
+  command->footer("Example:\n  " + example);
+  auto options = std::make_shared<Options>();
+  bind(*command, *options);
+  command->callback([&work, options, run] { work = [options, run] { return run(*options); }; });
+}
+
+void AddImport(CLI::App& app, Work& work);
+void AddSimulate(CLI::App& app, Work& work);
+void AddReduce(CLI::App& app, Work& work);
+void AddUniformity(CLI::App& app, Work& work);
+void AddFit(CLI::App& app, Work& work);
+void AddCube(CLI::App& app, Work& work);
+void AddRun(CLI::App& app, Work& work);
+void AddReplay(CLI::App& app, Work& work);
+void AddVerifyFiles(CLI::App& app, Work& work);
+void AddPack(CLI::App& app, Work& work);
+void AddServe(CLI::App& app, Work& work);
+
+}  // namespace eyebox::service::cli
+
+#endif  // EYEBOX_SERVICE_CLI_COMMAND_H_

@@ -1,0 +1,55 @@
+// eyebox: one binary, the same functions as the service, usable without it.
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <cstdio>
+#include <string>
+
+#include "capture/base/status.h"
+#include "capture/base/version.h"
+#include "service/cli/command.h"
+
+namespace eyebox::service::cli {
+namespace {
+
+constexpr int kUsageExitCode = 2;
+
+void AddAllCommands(CLI::App& app, Work& work) {
+  AddRun(app, work);
+  AddReplay(app, work);
+  AddImport(app, work);
+  AddSimulate(app, work);
+  AddReduce(app, work);
+  AddUniformity(app, work);
+  AddFit(app, work);
+  AddCube(app, work);
+  AddVerifyFiles(app, work);
+  AddPack(app, work);
+  AddServe(app, work);
+}
+
+int Main(int argc, char** argv) {
+  CLI::App app("Measures the luminance that a head-mounted display sends to the eye.", "eyebox");
+  app.set_version_flag("--version", std::string(kVersion));
+  app.require_subcommand(1);
+  app.footer(
+      "Exit status: 0 done, 2 usage, 3 bad input, 4 device, 5 measurement rejected.\n"
+      "Example:\n  eyebox run recording --out result");
+  Work work;
+  AddAllCommands(app, work);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kUsageExitCode;
+  }
+  const absl::Status status = work();
+  if (!status.ok()) {
+    std::fprintf(stderr, "eyebox: %s\n", std::string(status.message()).c_str());
+  }
+  return ExitCodeFor(status);
+}
+
+}  // namespace
+}  // namespace eyebox::service::cli
+
+int main(int argc, char** argv) { return eyebox::service::cli::Main(argc, argv); }

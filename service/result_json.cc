@@ -1,0 +1,33 @@
+#include "service/result_json.h"
+
+#include <google/protobuf/util/json_util.h>
+
+#include "capture/base/file.h"
+#include "capture/base/status.h"
+
+namespace eyebox::service {
+
+absl::StatusOr<std::string> ToJson(const google::protobuf::Message& message) {
+  google::protobuf::util::JsonPrintOptions options;
+  options.add_whitespace = true;
+  options.always_print_primitive_fields = true;
+  options.preserve_proto_field_names = true;
+  std::string json;
+  const auto status = google::protobuf::util::MessageToJsonString(message, &json, options);
+  if (!status.ok()) return absl::InternalError(status.ToString());
+  return json;
+}
+
+absl::Status ReadJson(const std::filesystem::path& file, google::protobuf::Message& message) {
+  EYEBOX_ASSIGN_OR_RETURN(const std::string json, ReadWholeFile(file));
+  const auto status = google::protobuf::util::JsonStringToMessage(json, &message);
+  if (!status.ok()) {
+    return BadInput(file.string(),
+                    "is not a " + message.GetDescriptor()->name() +
+                        " in JSON: " + std::string(status.message()),
+                    "give the file that eyebox wrote");
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace eyebox::service

@@ -1,0 +1,54 @@
+// Everything about the camera that reduction needs, measured in the same recording.
+//
+// The order in which it is built, each step from frames of the recording:
+//   darks  = FrameStacker per dark setting
+//   defects = FindHotPixels(darks)
+//   noise  = PhotonTransfer(shortest dark, defects) <- frames of every capture -> Fit()
+//   dark   = MeasureDark(stack, noise) per setting
+//   flat   = MeasureFlat(stacks of the flat, calibration so far, known luminance)
+#ifndef EYEBOX_OPTICS_REDUCE_CALIBRATION_H_
+#define EYEBOX_OPTICS_REDUCE_CALIBRATION_H_
+
+#include <optional>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "optics/photometry/luminance_image.h"
+#include "optics/reduce/frame_stacker.h"
+#include "optics/reduce/measured_image.h"
+#include "optics/sensor/defect_map.h"
+#include "optics/sensor/noise_model.h"
+
+namespace eyebox::optics {
+
+struct DarkFrame {
+  Setting setting;
+  MeasuredImage image_dn;  // mean count without light
+};
+
+// The answer to uniform light. `response` is a rate in DN/s of light of `luminance`; without a
+// known luminance it is normalised to a mean of 1 over the reference region.
+struct FlatField {
+  MeasuredImage response;
+  std::optional<KnownLuminance> luminance;
+};
+
+struct Calibration {
+  NoiseModel noise;
+  std::vector<DarkFrame> darks;  // one per setting used
+  DefectMap defects;
+  std::optional<FlatField> flat;
+  // Luminance of 1 DN/s, used only where there is no flat of known luminance. Through an unknown
+  // flat: of 1 DN/s in the reference region.
+  std::optional<KnownLuminance> luminance_of_one_dn_per_s;
+};
+
+// Mean and variance of a dark stack. Errors: InvalidArgument (empty stack).
+absl::StatusOr<DarkFrame> MeasureDark(const Stack& dark, const NoiseModel& noise);
+
+// The dark of this setting. Errors: InvalidArgument (there is none: names those there are).
+absl::StatusOr<const DarkFrame*> FindDark(const Calibration& calibration, const Setting& setting);
+
+}  // namespace eyebox::optics
+
+#endif  // EYEBOX_OPTICS_REDUCE_CALIBRATION_H_

@@ -1,0 +1,43 @@
+// Uniformity from a few points, in the style of the Information Display Measurements Standard
+// (IDMS, "sampled uniformity"): 9 points at 10, 50 and 90 % of width and height; 13 with the four
+// at 30 and 70 %.
+#ifndef EYEBOX_OPTICS_UNIFORMITY_POINT_UNIFORMITY_H_
+#define EYEBOX_OPTICS_UNIFORMITY_POINT_UNIFORMITY_H_
+
+#include <cstddef>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "optics/reduce/measured_image.h"
+
+namespace eyebox::optics {
+
+// Mean over the valid pixels of a disk, unit of the image.
+struct PatchMean {
+  double x_px = 0;
+  double y_px = 0;
+  double value = 0;
+  double sigma = 0;
+  size_t pixels = 0;
+};
+
+struct PointUniformity {
+  std::vector<PatchMean> patches;  // rows from the top, left to right; then the four inner ones
+  double uniformity = 0;           // min / max
+  double nonuniformity = 0;        // 1 - min / max
+  double sigma = 0;                // standard uncertainty of either, from noise
+};
+
+// Errors: FailedPrecondition (no valid pixel in the disk).
+absl::StatusOr<PatchMean> MeanOverDisk(const MeasuredImage& image, double x_px, double y_px,
+                                       double radius_px);
+
+enum class PointPattern { kNine, kThirteen };
+
+// Errors: those of MeanOverDisk; FailedPrecondition (largest patch not above 0).
+absl::StatusOr<PointUniformity> MeasurePointUniformity(const MeasuredImage& image,
+                                                       PointPattern pattern, double radius_px);
+
+}  // namespace eyebox::optics
+
+#endif  // EYEBOX_OPTICS_UNIFORMITY_POINT_UNIFORMITY_H_

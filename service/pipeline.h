@@ -3,26 +3,13 @@
 #define EYEBOX_SERVICE_PIPELINE_H_
 
 #include <filesystem>
-#include <functional>
-#include <string>
 
 #include "absl/status/statusor.h"
 #include "capture/camera/rig.h"
 #include "eyebox/v1/results.pb.h"
+#include "service/watcher.h"
 
 namespace eyebox::service {
-
-struct Progress {
-  double fraction = 0;  // 0 to 1, never falls
-  std::string step;     // in words, for a person
-};
-
-// Called from the thread that computes. `progress` may be empty. `cancelled` is asked between
-// frames and steps; true ends the work with Cancelled.
-struct Watcher {
-  std::function<void(const Progress&)> progress;
-  std::function<bool()> cancelled;
-};
 
 struct RunOptions {
   int hdrp_cube_size = 32;  // 2 to 129

@@ -9,7 +9,7 @@
 
 #include "absl/status/status.h"
 #include "eyebox/v1/results.pb.h"
-#include "service/pipeline.h"
+#include "service/watcher.h"
 
 namespace eyebox::service::cli {
 

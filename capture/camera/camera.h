@@ -10,6 +10,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "capture/base/frame.h"
+#include "capture/base/geometry.h"
 
 namespace eyebox::capture {
 
@@ -24,6 +25,7 @@ struct CameraInfo {
   double exposure_max_s = 0;
   double gain_min_db = 0;
   double gain_max_db = 0;
+  std::optional<PinholeGeometry> geometry;  // where the optics are known
 };
 
 // The complete state that a capture depends on; everything automatic is off by definition.

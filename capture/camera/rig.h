@@ -2,6 +2,7 @@
 #ifndef EYEBOX_CAPTURE_CAMERA_RIG_H_
 #define EYEBOX_CAPTURE_CAMERA_RIG_H_
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,6 +23,13 @@ class StimulusPresenter {
   virtual absl::Status Present(const CaptureSpec& spec) = 0;
 };
 
+// Where the frames of a recording come from.
+enum class RecordingOrigin {
+  kCaptured,   // by Eyebox, from a device
+  kSimulated,  // by Eyebox, from the simulator
+  kImported,   // frames taken by other software
+};
+
 struct RigConfig {
   std::string name;        // resource name, [a-z0-9-]
   std::string camera_uri;  // "sim:NAME" or "replay:DIR"; see CameraSchemes()
@@ -31,6 +39,7 @@ struct RigConfig {
 // Camera and presenter may share state (a simulated headset), which lives as long as either.
 struct Rig {
   RigConfig config;
+  RecordingOrigin origin = RecordingOrigin::kCaptured;  // a replay passes on what it replays
   std::unique_ptr<Camera> camera;
   std::unique_ptr<StimulusPresenter> presenter;
 };

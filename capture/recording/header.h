@@ -7,23 +7,13 @@
 #include <string>
 
 #include "capture/base/capture_spec.h"
+#include "capture/base/geometry.h"
 #include "capture/camera/camera.h"
 #include "capture/camera/rig.h"
 
 namespace eyebox::capture {
 
-enum class RecordingOrigin {
-  kCaptured,   // by Eyebox, from a device
-  kSimulated,  // by Eyebox, from the simulator
-  kImported,   // frames taken by other software
-};
-
-// Ideal pinhole: field angle = atan((pixel - principal point) / focal length).
-struct PinholeGeometry {
-  double focal_length_px = 0;
-  double principal_x_px = 0;  // pixel centres are at whole numbers
-  double principal_y_px = 0;
-};
+using eyebox::PinholeGeometry;
 
 struct RecordingHeader {
   RecordingOrigin origin = RecordingOrigin::kCaptured;

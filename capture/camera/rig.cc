@@ -1,0 +1,47 @@
+#include "capture/camera/rig.h"
+
+#include <array>
+#include <string_view>
+
+#include "capture/base/status.h"
+#include "capture/camera/replay/replay_rig.h"
+#include "capture/camera/sim/sim_rig.h"
+
+namespace eyebox::capture {
+namespace {
+
+absl::StatusOr<Rig> OpenSim(const RigConfig& config, const Clock* clock) {
+  EYEBOX_ASSIGN_OR_RETURN(const SimParameters parameters, SimParametersOf(config));
+  return OpenSimRig(config, parameters, clock);
+}
+
+struct Scheme {
+  std::string_view name;
+  absl::StatusOr<Rig> (*open)(const RigConfig&, const Clock*);
+};
+
+constexpr std::array<Scheme, 2> kSchemes = {Scheme{"sim", OpenSim},
+                                            Scheme{"replay", OpenReplayRig}};
+
+}  // namespace
+
+absl::StatusOr<Rig> OpenRig(const RigConfig& config, const Clock* clock) {
+  const std::string_view uri = config.camera_uri;
+  for (const Scheme& scheme : kSchemes) {
+    if (uri.starts_with(scheme.name) && uri.substr(scheme.name.size()).starts_with(':')) {
+      return scheme.open(config, clock);
+    }
+  }
+  std::string known;
+  for (const Scheme& scheme : kSchemes) known.append(" ").append(scheme.name).append(":");
+  return BadInput("camera_uri '" + config.camera_uri + "'", "has no scheme that is known here",
+                  "start it with one of" + known);
+}
+
+std::vector<std::string> CameraSchemes() {
+  std::vector<std::string> names;
+  for (const Scheme& scheme : kSchemes) names.emplace_back(scheme.name);
+  return names;
+}
+
+}  // namespace eyebox::capture

@@ -1,0 +1,183 @@
+#include "capture/camera/sim/sim_rig.h"
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "capture/base/status.h"
+#include "capture/camera/camera_state.h"
+#include "capture/camera/sim/scene.h"
+#include "capture/camera/sim/sensor.h"
+
+namespace eyebox::capture {
+namespace {
+
+constexpr std::string_view kScheme = "sim:";
+constexpr uint64_t kFrameStream = 100;   // key apart from those of the fixed pattern
+constexpr int64_t kReadoutNs = 1000000;  // between the end of an exposure and the next one
+
+// What camera and presenter share: the sensor looking at the headset.
+class SimBench {
+ public:
+  SimBench(const SimParameters& parameters, uint64_t seed)
+      : parameters_(parameters),
+        seed_(seed),
+        pattern_(MakeFixedPattern(parameters.sensor, seed)),
+        rate_e_s_(parameters.sensor.size, 0.0) {}
+
+  absl::Status Present(const CaptureSpec& spec) {
+    if (!IsShown(spec)) {
+      EYEBOX_ASSIGN_OR_RETURN(rate_e_s_, SceneRate(parameters_, pattern_, spec));
+      shown_ = spec;
+    }
+    ++presentation_;
+    exposure_ = 0;
+    return absl::OkStatus();
+  }
+
+  std::vector<uint16_t> Expose(const CameraSettings& settings) {
+    NoiseSource noise({seed_, kFrameStream, presentation_, exposure_++});
+    return capture::Expose(parameters_.sensor, pattern_, rate_e_s_, settings, noise);
+  }
+
+ private:
+  // The scene does not depend on exposure, gain or name, so that a bracket draws it once.
+  bool IsShown(const CaptureSpec& spec) const {
+    return shown_ && shown_->kind == spec.kind && shown_->stimulus == spec.stimulus &&
+           shown_->luminance_cd_m2 == spec.luminance_cd_m2;
+  }
+
+  const SimParameters parameters_;
+  const uint64_t seed_;
+  const FixedPattern pattern_;
+  Image<double> rate_e_s_;
+  std::optional<CaptureSpec> shown_;
+  uint64_t presentation_ = 0;
+  uint64_t exposure_ = 0;
+};
+
+CameraInfo InfoOf(const RigConfig& config, const SimParameters& parameters) {
+  const SensorParameters& sensor = parameters.sensor;
+  return {.uri = config.camera_uri,
+          .vendor = "Eyebox",
+          .model = "simulator",
+          .serial = parameters.name,
+          .sensor_size = sensor.size,
+          .significant_bits = sensor.bits,
+          .exposure_min_s = sensor.exposure_min_s,
+          .exposure_max_s = sensor.exposure_max_s,
+          .gain_min_db = 0,
+          .gain_max_db = sensor.gain_max_db,
+          .geometry = parameters.geometry};
+}
+
+class SimCamera final : public Camera {
+ public:
+  SimCamera(CameraInfo info, double bias_dn, std::shared_ptr<SimBench> bench, const Clock* clock)
+      : info_(std::move(info)),
+        state_(info_.uri),
+        bias_dn_(bias_dn),
+        bench_(std::move(bench)),
+        clock_(clock) {}
+
+  const CameraInfo& Info() const override { return info_; }
+
+  absl::StatusOr<CameraSettings> Configure(const CameraSettings& settings) override {
+    EYEBOX_RETURN_IF_ERROR(state_.Configure(info_, settings));
+    return state_.settings();
+  }
+
+  absl::Status Start() override { return state_.Start(); }
+
+  // The exposure begins and ends here: what is presented later does not change its light.
+  absl::Status Trigger() override {
+    EYEBOX_RETURN_IF_ERROR(state_.Trigger());
+    pending_.push_back(TakeFrame());
+    return absl::OkStatus();
+  }
+
+  absl::StatusOr<Frame> NextFrame(std::chrono::milliseconds) override {
+    EYEBOX_RETURN_IF_ERROR(state_.TakePending());
+    Frame frame = std::move(pending_.front());
+    pending_.pop_front();
+    return frame;
+  }
+
+  absl::Status Stop() override {
+    state_.Stop();
+    pending_.clear();
+    return absl::OkStatus();
+  }
+
+ private:
+  Frame TakeFrame() {
+    auto counts_dn =
+        std::make_shared<const std::vector<uint16_t>>(bench_->Expose(state_.settings()));
+    Frame frame;
+    frame.metadata = NextMetadata();
+    frame.view = {.pixels_dn = *counts_dn, .size = info_.sensor_size};
+    frame.owner = std::move(counts_dn);
+    return frame;
+  }
+
+  FrameMetadata NextMetadata() {
+    const CameraSettings& settings = state_.settings();
+    device_time_ns_ += kReadoutNs + static_cast<int64_t>(settings.exposure_s * 1e9);
+    FrameMetadata metadata;
+    metadata.camera_frame_id = ++frame_id_;
+    metadata.device_time_ns = device_time_ns_;
+    metadata.monotonic_time_ns = clock_->MonotonicNs();
+    metadata.trigger_time_ns = metadata.monotonic_time_ns;
+    metadata.exposure_asked_s = settings.exposure_s;
+    metadata.exposure_reported_s = settings.exposure_s;
+    metadata.gain_asked_db = settings.gain_db;
+    metadata.gain_reported_db = settings.gain_db;
+    metadata.black_level_dn = bias_dn_;
+    return metadata;
+  }
+
+  const CameraInfo info_;
+  CameraState state_;
+  const double bias_dn_;
+  const std::shared_ptr<SimBench> bench_;
+  const Clock* const clock_;
+  std::deque<Frame> pending_;
+  uint64_t frame_id_ = 0;
+  int64_t device_time_ns_ = 0;
+};
+
+class SimPresenter final : public StimulusPresenter {
+ public:
+  explicit SimPresenter(std::shared_ptr<SimBench> bench) : bench_(std::move(bench)) {}
+  absl::Status Present(const CaptureSpec& spec) override { return bench_->Present(spec); }
+
+ private:
+  const std::shared_ptr<SimBench> bench_;
+};
+
+}  // namespace
+
+absl::StatusOr<SimParameters> SimParametersOf(const RigConfig& config) {
+  if (!config.camera_uri.starts_with(kScheme)) {
+    return BadInput(config.camera_uri, "is not a simulated rig", "give a URI like sim:rift-s-like");
+  }
+  return NamedSimParameters(std::string_view(config.camera_uri).substr(kScheme.size()));
+}
+
+absl::StatusOr<Rig> OpenSimRig(const RigConfig& config, const SimParameters& parameters,
+                               const Clock* clock) {
+  EYEBOX_RETURN_IF_ERROR(parameters.Validate());
+  auto bench = std::make_shared<SimBench>(parameters, config.seed);
+  Rig rig;
+  rig.config = config;
+  rig.origin = RecordingOrigin::kSimulated;
+  rig.camera = std::make_unique<SimCamera>(InfoOf(config, parameters), parameters.sensor.bias_dn,
+                                           bench, clock);
+  rig.presenter = std::make_unique<SimPresenter>(std::move(bench));
+  return rig;
+}
+
+}  // namespace eyebox::capture

@@ -12,8 +12,10 @@ namespace eyebox::optics {
 struct ExposurePairCheck {
   double shorter_s = 0;
   double longer_s = 0;
-  double ratio = 0;  // (signal_longer / signal_shorter) / (longer_s / shorter_s); NaN if pixels = 0
-  double sigma = 0;  // standard uncertainty of ratio, from noise alone; NaN if pixels = 0
+  // (signal_longer / signal_shorter) / (longer_s / shorter_s) and its standard uncertainty from
+  // noise alone. Both NaN where the shorter exposure's signal is not above 3 sigma.
+  double ratio = 0;
+  double sigma = 0;
   size_t pixels = 0;  // valid in both exposures
 };
 

@@ -24,6 +24,9 @@ namespace eyebox::optics {
 struct DarkFrame {
   Setting setting;
   MeasuredImage image_dn;  // mean count without light
+  // Share of pixels that read 0 DN in every frame: the camera clips its own noise, and what lies
+  // below its black level stays unknown.
+  double clipped_share = 0;
 };
 
 // The answer to uniform light. `response` is a rate in DN/s of light of `luminance`; without a

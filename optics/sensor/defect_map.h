@@ -12,8 +12,8 @@
 namespace eyebox::optics {
 
 struct DefectOptions {
-  double threshold = 8;          // robust standard deviations (1.4826 MAD) above the median
-  double minimum_excess_dn = 2;  // quantised darks can have MAD 0
+  // In robust standard deviations (1.4826 MAD, at least that of quantisation) above the median.
+  double threshold = 8;
 };
 
 struct DefectMap {

@@ -12,30 +12,24 @@
 #include "capture/base/image.h"
 #include "optics/reduce/frame_stacker.h"
 #include "optics/sensor/noise_model.h"
+#include "optics/sensor/tile_variance.h"
+#include "optics/sensor/variance_line.h"
 
 namespace eyebox::optics {
 
 struct PhotonTransferOptions {
-  int bins = 64;                     // of the signal, from 0 to saturation
+  int bins = 64;                     // of the signal, from 0 to the fitted fraction of saturation
   double fitted_fraction = 0.7;      // of saturation; EMVA 1288 fits the lower 70 %
   size_t pixels_per_pair = 1 << 20;  // larger frames are sampled evenly
   int colour_period_px = 2;          // same-colour neighbours; 2 suits a Bayer mosaic and grey
 };
 
-// Variance of one frame against signal above bias, both averaged over one bin of one pair.
-struct PhotonTransferPoint {
-  double signal_dn = 0;
-  double variance_dn2 = 0;
-  double degrees_of_freedom = 0;
-};
-
 // Streams frames capture by capture. Captures of two or more frames give temporal points (half the
 // variance of the difference of two frames, so that fixed patterns cancel, and each bin's mean
-// difference is removed, so that drift does too). Single frames of light give spatial points (per
-// tile, half the variance of the difference of same-colour neighbours; the median of the tiles of
-// a bin), which are used only where no pair of light or flat frames exists.
+// difference is removed, so that drift does too). Single frames of light give spatial points (see
+// TileVariances), which are used only where no pair of light or flat frames exists.
 // Saturated, clipped and defective pixels take no part. Not thread-safe.
-// Memory: two frames and the points.
+// Memory: three frames and the bins, whatever the length of the recording.
 class PhotonTransfer {
  public:
   // `bias` is the stack of the shortest dark exposure (its mean is subtracted pixel by pixel);
@@ -47,31 +41,39 @@ class PhotonTransfer {
   // Errors: InvalidArgument (size differs from the bias).
   absl::Status AddFrame(const FrameView& frame);
 
-  // Weighted straight line through the points: variance = read + quantisation + K signal.
-  // Errors: FailedPrecondition (no darks in pairs, no light, too small a range of signal: says
-  // what to record).
+  // Straight line through the points: variance = read + quantisation + K signal. What is found
+  // below the variance of quantisation counts as no read noise. Errors: FailedPrecondition (no
+  // light, too small a range of signal for K to 20 %: says what to record).
   absl::StatusOr<NoiseModel> Fit();
 
-  const std::vector<PhotonTransferPoint>& temporal_points() const { return temporal_; }
+  // Bins that take part: those of pairs of frames, or of single frames if there were no pairs of
+  // light; the darks' first, if they are not clipped at 0 DN.
+  std::vector<PhotonTransferPoint> Points() const;
 
  private:
+  // Sums over the pairs of one bin; variances of one straight line may be averaged over signals.
+  struct Bin {
+    double freedom = 0;
+    double freedom_variance = 0;
+    double freedom_signal = 0;
+  };
+
   void EndCapture();
   void AddPair(const FrameView& first, const FrameView& second);
-  void AddSingle(const FrameView& frame);
+  size_t BinOf(double signal_dn) const;
 
   Stack bias_;
   Image<uint8_t> defects_;
   PhotonTransferOptions options_;
-  double bias_median_dn_ = 0;
+  double bias_median_dn_;
+  double upper_signal_dn_;
   FrameKind kind_ = FrameKind::kDark;
-  int frames_in_capture_ = 0;
   Image<uint16_t> previous_;
-  bool pending_ = false;
-  bool saw_dark_pair_ = false;
+  int frames_in_capture_ = 0;
   bool saw_light_pair_ = false;
-  std::vector<PhotonTransferPoint> temporal_;
-  std::vector<std::vector<float>> tile_variances_;  // [bin][tile], capped
-  std::vector<double> tile_signal_sums_;            // [bin]
+  Bin dark_;
+  std::vector<Bin> light_;
+  TileVariances tiles_;
 };
 
 }  // namespace eyebox::optics

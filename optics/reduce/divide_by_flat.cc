@@ -1,0 +1,59 @@
+#include "optics/reduce/divide_by_flat.h"
+
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "capture/base/status.h"
+#include "optics/sensor/median.h"
+
+namespace eyebox::optics {
+namespace {
+
+constexpr size_t kMedianSamples = 1 << 18;  // enough for a threshold of a few percent
+
+double MedianOfValid(const MeasuredImage& image) {
+  const auto value = image.value.pixels();
+  const auto mask = image.mask.pixels();
+  const size_t stride = value.size() / kMedianSamples + 1;
+  std::vector<float> sample;
+  for (size_t i = 0; i < value.size(); i += stride) {
+    if (mask[i] == 0) sample.push_back(value[i]);
+  }
+  return Median(std::move(sample));
+}
+
+}  // namespace
+
+absl::StatusOr<MeasuredImage> DivideByFlat(MeasuredImage image, const MeasuredImage& response,
+                                           double minimum) {
+  if (image.size() != response.size()) {
+    return BadInput("flat", "its size differs from the image's",
+                    "record both with one region of interest");
+  }
+  const double median = MedianOfValid(response);
+  if (!(median > 0)) {
+    return Rejected("flat", "it has no light in it", "record a uniform source, well exposed");
+  }
+  const auto lowest = static_cast<float>(minimum * median);
+  float* const value = image.value.pixels().data();
+  float* const variance = image.variance.pixels().data();
+  uint8_t* const mask = image.mask.pixels().data();
+  const float* const flat = response.value.pixels().data();
+  const float* const flat_variance = response.variance.pixels().data();
+  const size_t count = image.mask.pixels().size();
+  for (size_t i = 0; i < count; ++i) {
+    const float per_flat = 1.0F / flat[i];
+    const float ratio = value[i] * per_flat;
+    value[i] = ratio;
+    variance[i] = (variance[i] + ratio * ratio * flat_variance[i]) * per_flat * per_flat;
+    // NaN compares false, so that a masked flat is unusable too.
+    const bool usable = (flat[i] >= lowest) & (flat[i] * flat[i] > 25.0F * flat_variance[i]);
+    mask[i] = static_cast<uint8_t>(mask[i] | (usable ? 0 : kNoFlat));
+  }
+  BlankMaskedPixels(image);
+  image.unit = image.unit == response.unit ? "1" : absl::StrCat(image.unit, " / ", response.unit);
+  image.history.push_back(absl::StrCat("DivideByFlat(median ", median, ", minimum ", minimum, ")"));
+  return image;
+}
+
+}  // namespace eyebox::optics

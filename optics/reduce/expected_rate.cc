@@ -1,0 +1,84 @@
+#include "optics/reduce/expected_rate.h"
+
+#include <cmath>
+
+#include "optics/reduce/box_mean.h"
+#include "optics/reduce/measured_image.h"
+
+namespace eyebox::optics {
+namespace {
+
+struct PooledRate {
+  Image<float> rate_dn_s;
+  Image<float> variance;  // from the rate itself: good enough to tell an edge from noise
+};
+
+// Counts and time pooled over the usable exposures of one row.
+struct RowPool {
+  explicit RowPool(int width) : counts_dn(width), time_s(width), noise_dn2(width) {}
+  std::vector<float> counts_dn;
+  std::vector<float> time_s;
+  std::vector<float> noise_dn2;  // of counts_dn, without the light's shot noise
+};
+
+void AddExposure(const Exposure& exposure, std::span<const uint8_t> defective, int y,
+                 const NoiseModel& noise, RowPool& pool) {
+  const auto light = exposure.light->mean_dn.row(y);
+  const auto saturation = exposure.saturation.row(y);
+  const auto dark = exposure.dark->image_dn.value.row(y);
+  const auto dark_variance = exposure.dark->image_dn.variance.row(y);
+  const auto dark_mask = exposure.dark->image_dn.mask.row(y);
+  const auto frames = static_cast<float>(exposure.light->frames);
+  const float time_s = frames * static_cast<float>(exposure.light->setting.exposure_s);
+  const auto light_noise = frames * static_cast<float>(noise.MeanVariance(0, 1));
+  for (size_t x = 0; x < light.size(); ++x) {
+    const bool usable = (saturation[x] | dark_mask[x] | defective[x]) == 0;
+    const float counts = frames * (light[x] - dark[x]);
+    const float variance = light_noise + frames * frames * dark_variance[x];
+    pool.counts_dn[x] += usable ? counts : 0.0F;
+    pool.time_s[x] += usable ? time_s : 0.0F;
+    pool.noise_dn2[x] += usable ? variance : 0.0F;
+  }
+}
+
+PooledRate PoolExposures(std::span<const Exposure> exposures, const Calibration& calibration) {
+  const ImageSize size = exposures[0].light->size();
+  const auto gain = static_cast<float>(calibration.noise.gain_dn_per_e);
+  PooledRate pooled{Image<float>(size), Image<float>(size)};
+  for (int y = 0; y < size.height_px; ++y) {
+    RowPool pool(size.width_px);
+    for (const Exposure& exposure : exposures) {
+      AddExposure(exposure, calibration.defects.defective.row(y), y, calibration.noise, pool);
+    }
+    const auto rate = pooled.rate_dn_s.row(y);
+    const auto variance = pooled.variance.row(y);
+    for (int x = 0; x < size.width_px; ++x) {
+      const float time_s = pool.time_s[x];
+      const float shot = gain * (pool.counts_dn[x] > 0 ? pool.counts_dn[x] : 0.0F);
+      rate[x] = time_s > 0 ? pool.counts_dn[x] / time_s : kNoValue;
+      variance[x] = (pool.noise_dn2[x] + shot) / time_s / time_s;
+    }
+  }
+  return pooled;
+}
+
+}  // namespace
+
+Image<float> ExpectedRate(std::span<const Exposure> exposures, const Calibration& calibration,
+                          const ExpectedRateOptions& options) {
+  PooledRate pooled = PoolExposures(exposures, calibration);
+  const Image<float> smooth =
+      BoxMean(pooled.rate_dn_s, options.smoothing_radius, options.colour_period_px);
+  const auto edge = static_cast<float>(options.edge_sigmas * options.edge_sigmas);
+  const auto rate = pooled.rate_dn_s.pixels();
+  const auto variance = pooled.variance.pixels();
+  const auto mean = smooth.pixels();
+  for (size_t i = 0; i < rate.size(); ++i) {
+    const float departure = rate[i] - mean[i];
+    // False for NaN, which then stays NaN.
+    rate[i] = departure * departure <= edge * variance[i] ? mean[i] : rate[i];
+  }
+  return std::move(pooled.rate_dn_s);
+}
+
+}  // namespace eyebox::optics

@@ -1,0 +1,41 @@
+// What each pixel is expected to read, for the noise model.
+//
+// A variance computed from a pixel's own noisy count is small where the count came out low, and an
+// inverse-variance mean then prefers low counts: it is biased by about minus one electron. The
+// expectation is pooled over the exposures and smoothed, so that it hardly knows that noise.
+#ifndef EYEBOX_OPTICS_REDUCE_EXPECTED_RATE_H_
+#define EYEBOX_OPTICS_REDUCE_EXPECTED_RATE_H_
+
+#include <cstdint>
+#include <span>
+
+#include "capture/base/image.h"
+#include "optics/reduce/calibration.h"
+#include "optics/reduce/frame_stacker.h"
+
+namespace eyebox::optics {
+
+// One exposure of the bracket and the dark that belongs to it. Borrowed.
+struct Exposure {
+  const Stack* light = nullptr;
+  const DarkFrame* dark = nullptr;
+  Image<uint8_t> saturation;  // of light, see SaturationMask
+};
+
+struct ExpectedRateOptions {
+  int smoothing_radius = 2;  // window of (2 r + 1)^2 same-colour neighbours
+  int colour_period_px = 2;
+  // Where a pixel departs further from the mean of its window than this many of its own standard
+  // deviations, the window straddles an edge and the pixel's own rate is taken.
+  double edge_sigmas = 4;
+};
+
+// DN/s, [height, width]; NaN where no exposure is free of saturation and defects.
+// The pooled rate is sum(counts) / sum(time) over those exposures: its weights are fixed
+// beforehand, hence unbiased.
+Image<float> ExpectedRate(std::span<const Exposure> exposures, const Calibration& calibration,
+                          const ExpectedRateOptions& options);
+
+}  // namespace eyebox::optics
+
+#endif  // EYEBOX_OPTICS_REDUCE_EXPECTED_RATE_H_

@@ -1,0 +1,78 @@
+#include "optics/reduce/measure_stack.h"
+
+#include "absl/strings/str_cat.h"
+
+namespace eyebox::optics {
+namespace {
+
+// The noise model in single precision, for whole rows. See NoiseModel::MeanVariance.
+struct NoiseF {
+  NoiseF(const NoiseModel& noise, int frame_count)
+      : read(static_cast<float>(noise.read_variance_dn2)),
+        gain(static_cast<float>(noise.gain_dn_per_e)),
+        quantisation(static_cast<float>(noise.quantisation_variance_dn2)),
+        bias_dn(static_cast<float>(noise.bias_dn)),
+        per_frame(1.0F / static_cast<float>(frame_count)) {}
+
+  float FrameNoise(float excess_dn) const { return read + gain * (excess_dn > 0 ? excess_dn : 0); }
+  float MeanVariance(float frame_noise) const {
+    const bool dithered = frame_noise >= static_cast<float>(NoiseModel::kDitheringVarianceDn2);
+    return frame_noise * per_frame + quantisation * (dithered ? per_frame : 1.0F);
+  }
+
+  float read, gain, quantisation, bias_dn, per_frame;
+};
+
+struct Rails {
+  float upper_dn;
+  float guard_squared;  // in units of the variance
+
+  // Both distances are compared squared, to keep roots out of the loop.
+  uint8_t Flags(float expected_dn, float frame_variance) const {
+    const float below_upper = upper_dn - expected_dn;
+    const float reach = guard_squared * frame_variance;
+    const bool high = below_upper <= 0 || below_upper * below_upper <= reach;
+    const bool low = expected_dn <= 0 || expected_dn * expected_dn <= reach;
+    return static_cast<uint8_t>((high ? kSaturated : 0) | (low ? kUnderexposed : 0));
+  }
+};
+
+}  // namespace
+
+MeasuredImage MeasureStack(const Exposure& exposure, const Image<float>& expected_rate_dn_s,
+                           const NoiseModel& noise, const DefectMap& defects,
+                           double rail_guard_sigmas) {
+  const Stack& light = *exposure.light;
+  MeasuredImage image = MakeMeasuredImage(light.size(), "DN");
+  const NoiseF model(noise, light.frames);
+  const Rails rails{static_cast<float>(light.range.SaturationDn()),
+                    static_cast<float>(rail_guard_sigmas * rail_guard_sigmas)};
+  const auto exposure_s = static_cast<float>(light.setting.exposure_s);
+  for (int y = 0; y < image.size().height_px; ++y) {
+    const auto mean_dn = light.mean_dn.row(y);
+    const auto dark_dn = exposure.dark->image_dn.value.row(y);
+    const auto expected = expected_rate_dn_s.row(y);
+    const auto saturation = exposure.saturation.row(y);
+    const auto defective = defects.defective.row(y);
+    const auto value = image.value.row(y);
+    const auto variance = image.variance.row(y);
+    const auto mask = image.mask.row(y);
+    for (size_t x = 0; x < value.size(); ++x) {
+      const float expected_dn = expected[x] * exposure_s + dark_dn[x];
+      const float frame_noise = model.FrameNoise(expected_dn - model.bias_dn);
+      // Saturation already implies a count next to the upper rail: no second reason is needed.
+      const uint8_t railed = rails.Flags(expected_dn, frame_noise + model.quantisation);
+      const uint8_t flags = saturation[x] != 0 ? saturation[x] : railed;
+      value[x] = mean_dn[x];
+      variance[x] = model.MeanVariance(frame_noise);
+      mask[x] = static_cast<uint8_t>(flags | (defective[x] != 0 ? kDefective : 0));
+    }
+  }
+  BlankMaskedPixels(image);
+  image.history.push_back(absl::StrCat("MeasureStack(", Describe(light.setting), ", frames ",
+                                       light.frames, ", saturation ", light.range.SaturationDn(),
+                                       " DN, rail guard ", rail_guard_sigmas, " sigma)"));
+  return image;
+}
+
+}  // namespace eyebox::optics

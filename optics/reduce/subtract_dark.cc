@@ -1,0 +1,37 @@
+#include "optics/reduce/subtract_dark.h"
+
+#include "absl/strings/str_cat.h"
+#include "capture/base/status.h"
+
+namespace eyebox::optics {
+
+absl::StatusOr<MeasuredImage> SubtractDark(MeasuredImage light_dn, const Setting& setting,
+                                           const DarkFrame& dark) {
+  const std::string where = absl::StrCat("light of ", Describe(setting));
+  if (!SameSetting(setting, dark.setting)) {
+    return BadInput(where, absl::StrCat("the dark is of ", Describe(dark.setting)),
+                    "subtract a dark of the same exposure and gain");
+  }
+  if (light_dn.size() != dark.image_dn.size()) {
+    return BadInput(where, "the dark has another size", "record both with one region of interest");
+  }
+  if (light_dn.unit != "DN") {
+    return BadInput(where, absl::StrCat("its unit is ", light_dn.unit), "subtract darks from DN");
+  }
+  float* const value = light_dn.value.pixels().data();
+  float* const variance = light_dn.variance.pixels().data();
+  uint8_t* const mask = light_dn.mask.pixels().data();
+  const float* const dark_value = dark.image_dn.value.pixels().data();
+  const float* const dark_variance = dark.image_dn.variance.pixels().data();
+  const uint8_t* const dark_mask = dark.image_dn.mask.pixels().data();
+  const size_t count = light_dn.mask.pixels().size();
+  for (size_t i = 0; i < count; ++i) {
+    value[i] -= dark_value[i];  // NaN where the dark is masked
+    variance[i] += dark_variance[i];
+    mask[i] = static_cast<uint8_t>(mask[i] | dark_mask[i]);
+  }
+  light_dn.history.push_back(absl::StrCat("SubtractDark(", Describe(dark.setting), ")"));
+  return light_dn;
+}
+
+}  // namespace eyebox::optics

@@ -1,0 +1,93 @@
+#include "optics/sensor/variance_line.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace eyebox::optics {
+namespace {
+
+constexpr double kQuantisationDn2 = 1.0 / 12;  // no measured variance of counts is known better
+constexpr double kHuberSigmas = 2.5;
+constexpr int kIterations = 30;
+
+struct Sums {
+  double w = 0, ws = 0, wss = 0, wv = 0, wsv = 0;
+};
+
+double PredictedVariance(const VarianceLine& line, double signal_dn) {
+  return std::max(line.intercept_dn2 + line.slope_dn * signal_dn, kQuantisationDn2);
+}
+
+double StandardScore(const VarianceLine& line, const PhotonTransferPoint& point) {
+  const double predicted = PredictedVariance(line, point.signal_dn);
+  return (point.variance_dn2 - line.intercept_dn2 - line.slope_dn * point.signal_dn) /
+         (predicted * std::sqrt(2 / point.degrees_of_freedom));
+}
+
+double Weight(const VarianceLine& line, const PhotonTransferPoint& point) {
+  const double predicted = PredictedVariance(line, point.signal_dn);
+  const double score = StandardScore(line, point);
+  const double robust = score > kHuberSigmas ? kHuberSigmas / score : 1;
+  return robust * point.degrees_of_freedom / (2 * predicted * predicted);
+}
+
+// From the median of the points' slopes: a start that a minority of textured points cannot lift.
+VarianceLine StartingLine(std::span<const PhotonTransferPoint> points) {
+  const auto lowest =
+      std::min_element(points.begin(), points.end(),
+                       [](const auto& a, const auto& b) { return a.signal_dn < b.signal_dn; });
+  VarianceLine line;
+  line.intercept_dn2 = lowest->variance_dn2;
+  std::vector<double> slopes;
+  for (const PhotonTransferPoint& point : points) {
+    const double run = point.signal_dn - lowest->signal_dn;
+    if (run > 0) slopes.push_back((point.variance_dn2 - lowest->variance_dn2) / run);
+  }
+  if (slopes.empty()) return line;
+  const auto middle = slopes.begin() + static_cast<std::ptrdiff_t>(slopes.size() / 2);
+  std::nth_element(slopes.begin(), middle, slopes.end());
+  line.slope_dn = std::max(*middle, 0.0);
+  return line;
+}
+
+bool Improve(std::span<const PhotonTransferPoint> points, VarianceLine& line) {
+  Sums s;
+  for (const PhotonTransferPoint& point : points) {
+    const double w = Weight(line, point);
+    s.w += w;
+    s.ws += w * point.signal_dn;
+    s.wss += w * point.signal_dn * point.signal_dn;
+    s.wv += w * point.variance_dn2;
+    s.wsv += w * point.signal_dn * point.variance_dn2;
+  }
+  const double determinant = s.w * s.wss - s.ws * s.ws;
+  if (!(determinant > 1e-12 * s.w * s.wss)) return false;
+  line.slope_dn = (s.w * s.wsv - s.ws * s.wv) / determinant;
+  line.intercept_dn2 = (s.wss * s.wv - s.ws * s.wsv) / determinant;
+  line.slope_sigma_dn = std::sqrt(s.w / determinant);
+  line.intercept_sigma_dn2 = std::sqrt(s.wss / determinant);
+  return true;
+}
+
+}  // namespace
+
+VarianceLine FitVarianceLine(std::span<const PhotonTransferPoint> points) {
+  if (points.size() < 2) return {};
+  VarianceLine line = StartingLine(points);
+  for (int i = 0; i < kIterations; ++i) {
+    if (!Improve(points, line)) return {};
+  }
+  double chi2 = 0;
+  for (const PhotonTransferPoint& point : points) {
+    const double score = StandardScore(line, point);
+    chi2 += score * score;
+  }
+  line.reduced_chi2 = points.size() > 2 ? chi2 / static_cast<double>(points.size() - 2) : 0;
+  const double scale = std::sqrt(std::max(line.reduced_chi2, 1.0));
+  line.slope_sigma_dn *= scale;
+  line.intercept_sigma_dn2 *= scale;
+  return line;
+}
+
+}  // namespace eyebox::optics

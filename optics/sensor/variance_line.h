@@ -1,0 +1,31 @@
+// The straight line of photon transfer: variance = intercept + K signal.
+#ifndef EYEBOX_OPTICS_SENSOR_VARIANCE_LINE_H_
+#define EYEBOX_OPTICS_SENSOR_VARIANCE_LINE_H_
+
+#include <span>
+
+namespace eyebox::optics {
+
+// Variance of one frame at a signal above bias.
+struct PhotonTransferPoint {
+  double signal_dn = 0;
+  double variance_dn2 = 0;
+  double degrees_of_freedom = 0;  // of the variance; its sigma is variance sqrt(2 / dof)
+};
+
+struct VarianceLine {
+  double intercept_dn2 = 0;
+  double slope_dn = 0;  // K, DN/e
+  double intercept_sigma_dn2 = 0;
+  double slope_sigma_dn = 0;  // 0 if the points do not determine a line
+  double reduced_chi2 = 0;    // above 1 the sigmas have been scaled by its root
+};
+
+// Weighted least squares, each point weighted by the variance that the line predicts there, not by
+// its own (which would prefer the low ones); points far above the line, where texture adds to the
+// noise, lose weight after Huber. At least two points of different signal, else all zero.
+VarianceLine FitVarianceLine(std::span<const PhotonTransferPoint> points);
+
+}  // namespace eyebox::optics
+
+#endif  // EYEBOX_OPTICS_SENSOR_VARIANCE_LINE_H_

@@ -1,0 +1,79 @@
+#include "optics/uniformity/point_uniformity.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "capture/base/status.h"
+
+namespace eyebox::optics {
+namespace {
+
+// Fractions of width and height.
+constexpr std::array<std::array<double, 2>, 13> kPoints = {{{0.1, 0.1},
+                                                            {0.5, 0.1},
+                                                            {0.9, 0.1},
+                                                            {0.1, 0.5},
+                                                            {0.5, 0.5},
+                                                            {0.9, 0.5},
+                                                            {0.1, 0.9},
+                                                            {0.5, 0.9},
+                                                            {0.9, 0.9},
+                                                            {0.3, 0.3},
+                                                            {0.7, 0.3},
+                                                            {0.3, 0.7},
+                                                            {0.7, 0.7}}};
+
+}  // namespace
+
+absl::StatusOr<PatchMean> MeanOverDisk(const MeasuredImage& image, double x_px, double y_px,
+                                       double radius_px) {
+  const auto [width, height] = image.size();
+  const int top = std::max(0, static_cast<int>(std::ceil(y_px - radius_px)));
+  const int bottom = std::min(height - 1, static_cast<int>(std::floor(y_px + radius_px)));
+  const int left = std::max(0, static_cast<int>(std::ceil(x_px - radius_px)));
+  const int right = std::min(width - 1, static_cast<int>(std::floor(x_px + radius_px)));
+  PatchMean patch{x_px, y_px};
+  double variance = 0;
+  for (int y = top; y <= bottom; ++y) {
+    for (int x = left; x <= right; ++x) {
+      if (std::hypot(x - x_px, y - y_px) > radius_px || image.mask.at(x, y) != 0) continue;
+      patch.value += image.value.at(x, y);
+      variance += image.variance.at(x, y);
+      ++patch.pixels;
+    }
+  }
+  if (patch.pixels == 0) {
+    return Rejected(absl::StrCat("patch at pixel (", x_px, ", ", y_px, ")"),
+                    "it holds no valid pixel",
+                    "record exposures that neither saturate nor vanish there, or move the patch");
+  }
+  patch.value /= static_cast<double>(patch.pixels);
+  patch.sigma = std::sqrt(variance) / static_cast<double>(patch.pixels);
+  return patch;
+}
+
+absl::StatusOr<PointUniformity> MeasurePointUniformity(const MeasuredImage& image,
+                                                       PointPattern pattern, double radius_px) {
+  const auto [width, height] = image.size();
+  const size_t points = pattern == PointPattern::kNine ? 9 : kPoints.size();
+  PointUniformity result;
+  for (size_t i = 0; i < points; ++i) {
+    EYEBOX_ASSIGN_OR_RETURN(PatchMean patch, MeanOverDisk(image, kPoints[i][0] * (width - 1),
+                                                          kPoints[i][1] * (height - 1), radius_px));
+    result.patches.push_back(patch);
+  }
+  const auto [low, high] =
+      std::minmax_element(result.patches.begin(), result.patches.end(),
+                          [](const auto& a, const auto& b) { return a.value < b.value; });
+  if (!(high->value > 0)) {
+    return Rejected("uniformity", "no patch has light", "measure a full field that is lit");
+  }
+  result.uniformity = low->value / high->value;
+  result.nonuniformity = 1 - result.uniformity;
+  result.sigma = std::hypot(low->sigma, result.uniformity * high->sigma) / high->value;
+  return result;
+}
+
+}  // namespace eyebox::optics

@@ -1,0 +1,123 @@
+#include "optics/uniformity/uniformity_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "absl/strings/str_cat.h"
+#include "capture/base/status.h"
+
+namespace eyebox::optics {
+namespace {
+
+struct Disk {
+  PixelPoint centre;
+  double radius_px = 0;
+  bool Holds(int x, int y) const {
+    return std::hypot(x - centre.x_px, y - centre.y_px) <= radius_px;
+  }
+};
+
+absl::StatusOr<Disk> ReferenceDisk(ImageSize size, const UniformityOptions& options) {
+  const PixelPoint centre{0.5 * (size.width_px - 1), 0.5 * (size.height_px - 1)};
+  const PixelPoint reference = options.reference.value_or(centre);
+  const bool inside = reference.x_px >= 0 && reference.x_px <= size.width_px - 1 &&
+                      reference.y_px >= 0 && reference.y_px <= size.height_px - 1;
+  if (!inside) {
+    return BadInput(
+        "uniformity",
+        absl::StrCat("the reference point (", reference.x_px, ", ", reference.y_px,
+                     ") is outside the image of ", size.width_px, " x ", size.height_px, " pixels"),
+        "choose a point inside");
+  }
+  const double radius = options.reference_radius_fraction * std::min(size.width_px, size.height_px);
+  return Disk{reference, std::max(radius, 1.0)};
+}
+
+// g = L / R, var g = (var L + g^2 var R - 2 g cov(L, R)) / R^2. Inside the disk R contains the
+// pixel itself with weight 1/n, hence cov(L, R) = var L / n.
+MeasuredImage RatioToReference(const MeasuredImage& luminance, const Disk& disk,
+                               const PatchMean& reference) {
+  MeasuredImage ratio = luminance;
+  const double per_reference = 1 / reference.value;
+  const double reference_variance = reference.sigma * reference.sigma;
+  for (int y = 0; y < ratio.size().height_px; ++y) {
+    const bool near = std::abs(y - disk.centre.y_px) <= disk.radius_px;
+    const auto value = ratio.value.row(y);
+    const auto variance = ratio.variance.row(y);
+    for (int x = 0; x < ratio.size().width_px; ++x) {
+      const double g = value[x] * per_reference;
+      const double shared =
+          near && disk.Holds(x, y) ? 2 * g / static_cast<double>(reference.pixels) : 0;
+      const double sum = variance[x] * (1 - shared) + g * g * reference_variance;
+      value[x] = static_cast<float>(g);
+      variance[x] = static_cast<float>(sum * per_reference * per_reference);
+    }
+  }
+  ratio.unit = "1";
+  ratio.history.push_back(absl::StrCat("RatioToReference(point (", disk.centre.x_px, ", ",
+                                       disk.centre.y_px, "), radius ", disk.radius_px, " px)"));
+  return ratio;
+}
+
+void CompareRawAndSmooth(UniformityMap& map) {
+  const Image<float> smooth = map.smooth.Values();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  map.raw_range = map.smooth_range = {kInfinity, -kInfinity};
+  const auto extend = [](FieldRange& range, double g) {
+    range.minimum = std::min(range.minimum, g);
+    range.maximum = std::max(range.maximum, g);
+  };
+  double squares = 0;
+  double expected = 0;
+  size_t pixels = 0;
+  for (size_t i = 0; i < smooth.pixels().size(); ++i) {
+    if (map.raw.mask.pixels()[i] != 0) continue;
+    const double raw = map.raw.value.pixels()[i];
+    const double model = smooth.pixels()[i];
+    extend(map.raw_range, raw);
+    extend(map.smooth_range, model);
+    squares += (raw - model) * (raw - model);
+    expected += map.raw.variance.pixels()[i];
+    ++pixels;
+  }
+  map.residual_rms = std::sqrt(squares / static_cast<double>(pixels));
+  map.residual_rms_expected = std::sqrt(expected / static_cast<double>(pixels));
+}
+
+}  // namespace
+
+absl::StatusOr<UniformityMap> MeasureUniformity(const LuminanceImage& full_field,
+                                                const UniformityOptions& options) {
+  const MeasuredImage& luminance = full_field.image;
+  EYEBOX_ASSIGN_OR_RETURN(const Disk disk, ReferenceDisk(luminance.size(), options));
+  EYEBOX_ASSIGN_OR_RETURN(
+      const PatchMean reference,
+      MeanOverDisk(luminance, disk.centre.x_px, disk.centre.y_px, disk.radius_px));
+  if (!(reference.value > 5 * reference.sigma)) {
+    return Rejected("uniformity",
+                    absl::StrCat("luminance ", reference.value, " +- ", reference.sigma,
+                                 " at the reference point"),
+                    "measure uniformity on a level that is lit, or expose longer");
+  }
+  UniformityMap map;
+  map.reference = disk.centre;
+  map.reference_luminance = reference.value;
+  map.reference_luminance_sigma = reference.sigma;
+  map.raw = RatioToReference(luminance, disk, reference);
+  EYEBOX_ASSIGN_OR_RETURN(const SmoothField field,
+                          FitSmoothField(luminance, options.polynomial_order));
+  EYEBOX_ASSIGN_OR_RETURN(map.smooth, NormaliseAt(field, disk.centre.x_px, disk.centre.y_px));
+  CompareRawAndSmooth(map);
+  const double patch_px =
+      std::max(options.patch_radius_fraction *
+                   std::min(luminance.size().width_px, luminance.size().height_px),
+               1.0);
+  EYEBOX_ASSIGN_OR_RETURN(map.nine_points,
+                          MeasurePointUniformity(luminance, PointPattern::kNine, patch_px));
+  EYEBOX_ASSIGN_OR_RETURN(map.thirteen_points,
+                          MeasurePointUniformity(luminance, PointPattern::kThirteen, patch_px));
+  return map;
+}
+
+}  // namespace eyebox::optics

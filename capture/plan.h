@@ -1,0 +1,43 @@
+// Which captures a measurement consists of.
+#ifndef EYEBOX_CAPTURE_PLAN_H_
+#define EYEBOX_CAPTURE_PLAN_H_
+
+#include <cstdint>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "capture/base/capture_spec.h"
+
+namespace eyebox::capture {
+
+// Defaults fit "sim:rift-s-like" and displays like it (peak 59 cd/m2, black 0.19 cd/m2).
+struct PlanOptions {
+  int levels = 17;  // drive values i / (levels - 1)
+  // The bracket. Factors of 6 overlap by far more than the rails take away. White fills about 75 %
+  // of the well in the shortest; black is 1700 e- in the longest, 600 times the read noise. All
+  // are whole numbers of 80 Hz refresh periods, so that a strobed panel shows no beat.
+  std::vector<double> exposures_s = {0.0125, 0.075, 0.45};
+  double gain_db = 0;
+  int repeats = 2;  // frames per level and exposure
+  int dark_repeats = 8;
+  // Flats fill about 70 % of the well in the middle exposure and still count in the shortest:
+  // 8 frames of each leave 0.29 % per pixel on the axis, 0.34 % in the corners (cos^4 = 0.69).
+  int flat_repeats = 8;  // 0: no flats
+  double flat_luminance_cd_m2 = 9;
+  double flat_luminance_relative_sigma = 0.02;  // of the photometer that read the reference
+  uint64_t seed = 1;                            // of the order of levels
+
+  // Errors: InvalidArgument (names the field and what it may be).
+  absl::Status Validate() const;
+};
+
+// Darks of every exposure, flats at every exposure (reduction masks what saturates), then grey full
+// fields: the levels in random order, so that drift of display or camera does not look like a
+// slope, each with the whole bracket, shortest exposure first. Level i has level_id i.
+// Errors: those of Validate().
+absl::StatusOr<CapturePlan> MakeGreyPlan(const PlanOptions& options);
+
+}  // namespace eyebox::capture
+
+#endif  // EYEBOX_CAPTURE_PLAN_H_

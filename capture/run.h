@@ -23,8 +23,8 @@ struct RunProgress {
 };
 
 struct RunOptions {
-  std::function<void(const RunProgress&)> progress;  // before every capture
-  std::function<bool()> cancelled;                   // asked before every frame
+  std::function<void(const RunProgress&)> progress = nullptr;  // before every capture
+  std::function<bool()> cancelled = nullptr;                   // asked before every frame
   int attempts = 3;  // a capture with a drop or an incomplete frame is taken again, this often
   // Largest |reported / asked - 1| of an exposure. Darks and lights count as of one exposure up to
   // here, and the reduction divides by the asked one.

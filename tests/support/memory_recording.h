@@ -1,0 +1,69 @@
+// A recording in memory, which notes how it was written.
+#ifndef EYEBOX_TESTS_SUPPORT_MEMORY_RECORDING_H_
+#define EYEBOX_TESTS_SUPPORT_MEMORY_RECORDING_H_
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "capture/recording/writer.h"
+
+namespace eyebox::capture {
+
+struct MemoryCapture {
+  CaptureSpec spec;
+  std::vector<Frame> frames;
+  size_t acknowledged = 0;
+  bool published = false;
+};
+
+class MemoryRecording final : public RecordingWriter {
+ public:
+  absl::StatusOr<std::unique_ptr<CaptureWriter>> BeginCapture(const CaptureSpec& spec,
+                                                              ImageSize) override {
+    captures_.push_back(std::make_shared<MemoryCapture>());
+    captures_.back()->spec = spec;
+    return std::make_unique<Writer>(captures_.back());
+  }
+
+  // Every capture that was begun, published or not.
+  const std::vector<std::shared_ptr<MemoryCapture>>& captures() const { return captures_; }
+
+  std::vector<std::shared_ptr<MemoryCapture>> Published() const {
+    std::vector<std::shared_ptr<MemoryCapture>> published;
+    for (const auto& capture : captures_) {
+      if (capture->published) published.push_back(capture);
+    }
+    return published;
+  }
+
+ private:
+  class Writer final : public CaptureWriter {
+   public:
+    explicit Writer(std::shared_ptr<MemoryCapture> capture) : capture_(std::move(capture)) {}
+    absl::Status Append(const Frame& frame) override {
+      capture_->frames.push_back(frame);
+      return absl::OkStatus();
+    }
+    absl::Status Acknowledge() override {
+      capture_->acknowledged = capture_->frames.size();
+      return absl::OkStatus();
+    }
+    absl::Status Publish() override {
+      if (capture_->acknowledged != static_cast<size_t>(capture_->spec.repeats)) {
+        return absl::FailedPreconditionError("some frames are not acknowledged");
+      }
+      capture_->published = true;
+      return absl::OkStatus();
+    }
+
+   private:
+    const std::shared_ptr<MemoryCapture> capture_;
+  };
+
+  std::vector<std::shared_ptr<MemoryCapture>> captures_;
+};
+
+}  // namespace eyebox::capture
+
+#endif  // EYEBOX_TESTS_SUPPORT_MEMORY_RECORDING_H_

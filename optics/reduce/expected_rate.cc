@@ -1,6 +1,7 @@
 #include "optics/reduce/expected_rate.h"
 
-#include <cmath>
+#include <algorithm>
+#include <utility>
 
 #include "optics/reduce/box_mean.h"
 #include "optics/reduce/measured_image.h"
@@ -10,7 +11,9 @@ namespace {
 
 struct PooledRate {
   Image<float> rate_dn_s;
-  Image<float> variance;  // from the rate itself: good enough to tell an edge from noise
+  // The variance of a rate R is dark_variance + shot_variance * R, (DN/s)^2.
+  Image<float> dark_variance;
+  Image<float> shot_variance;  // per DN/s
 };
 
 // Counts and time pooled over the usable exposures of one row.
@@ -44,19 +47,20 @@ void AddExposure(const Exposure& exposure, std::span<const uint8_t> defective, i
 PooledRate PoolExposures(std::span<const Exposure> exposures, const Calibration& calibration) {
   const ImageSize size = exposures[0].light->size();
   const auto gain = static_cast<float>(calibration.noise.gain_dn_per_e);
-  PooledRate pooled{Image<float>(size), Image<float>(size)};
+  PooledRate pooled{Image<float>(size), Image<float>(size), Image<float>(size)};
   for (int y = 0; y < size.height_px; ++y) {
     RowPool pool(size.width_px);
     for (const Exposure& exposure : exposures) {
       AddExposure(exposure, calibration.defects.defective.row(y), y, calibration.noise, pool);
     }
     const auto rate = pooled.rate_dn_s.row(y);
-    const auto variance = pooled.variance.row(y);
+    const auto dark_variance = pooled.dark_variance.row(y);
+    const auto shot_variance = pooled.shot_variance.row(y);
     for (int x = 0; x < size.width_px; ++x) {
-      const float time_s = pool.time_s[x];
-      const float shot = gain * (pool.counts_dn[x] > 0 ? pool.counts_dn[x] : 0.0F);
-      rate[x] = time_s > 0 ? pool.counts_dn[x] / time_s : kNoValue;
-      variance[x] = (pool.noise_dn2[x] + shot) / time_s / time_s;
+      const float per_s = 1.0F / pool.time_s[x];
+      rate[x] = pool.time_s[x] > 0 ? pool.counts_dn[x] * per_s : kNoValue;
+      dark_variance[x] = pool.noise_dn2[x] * per_s * per_s;
+      shot_variance[x] = gain * per_s;
     }
   }
   return pooled;
@@ -71,12 +75,17 @@ Image<float> ExpectedRate(std::span<const Exposure> exposures, const Calibration
       BoxMean(pooled.rate_dn_s, options.smoothing_radius, options.colour_period_px);
   const auto edge = static_cast<float>(options.edge_sigmas * options.edge_sigmas);
   const auto rate = pooled.rate_dn_s.pixels();
-  const auto variance = pooled.variance.pixels();
+  const auto dark_variance = pooled.dark_variance.pixels();
+  const auto shot_variance = pooled.shot_variance.pixels();
   const auto mean = smooth.pixels();
   for (size_t i = 0; i < rate.size(); ++i) {
     const float departure = rate[i] - mean[i];
+    // At the higher of the two: a count that came out low must not make its own noise look small,
+    // or it passes for an edge.
+    const float higher = std::max(std::max(rate[i], mean[i]), 0.0F);
+    const float variance = dark_variance[i] + shot_variance[i] * higher;
     // False for NaN, which then stays NaN.
-    rate[i] = departure * departure <= edge * variance[i] ? mean[i] : rate[i];
+    rate[i] = departure * departure <= edge * variance ? mean[i] : rate[i];
   }
   return std::move(pooled.rate_dn_s);
 }

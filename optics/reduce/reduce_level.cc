@@ -16,6 +16,7 @@
 #include "optics/reduce/merge_bracket.h"
 #include "optics/reduce/saturation_mask.h"
 #include "optics/reduce/subtract_dark.h"
+#include "optics/reduce/variance_budget.h"
 
 namespace eyebox::optics {
 namespace {
@@ -117,6 +118,7 @@ absl::StatusOr<ReducedRate> ReduceRate(std::span<const Stack> exposures,
       ExpectedRate(bracket, calibration, {options.smoothing_radius, options.colour_period_px});
   ReducedRate reduced;
   BracketMerger merger;
+  VarianceBudgetMeter budget(calibration.noise, expected.size());
   MeasuredImage shorter;
   double shorter_s = 0;
   for (const Exposure& exposure : bracket) {
@@ -128,11 +130,13 @@ absl::StatusOr<ReducedRate> ReduceRate(std::span<const Stack> exposures,
           CompareExposures(shorter, shorter_s, rate, exposure_s, expected));
     }
     EYEBOX_RETURN_IF_ERROR(merger.Add(rate));
+    budget.Add(exposure, rate, expected);
     shorter = std::move(rate);
     shorter_s = exposure_s;
   }
   EYEBOX_ASSIGN_OR_RETURN(reduced.rate, merger.Finish());
   reduced.report.hot_share = calibration.defects.hot_share;
+  reduced.report.budget = budget.Mean();
   ReportInvalid(reduced.rate, reduced.report);
   return reduced;
 }
@@ -144,8 +148,9 @@ absl::StatusOr<ReducedLevel> ReduceLevel(std::span<const Stack> exposures,
   std::optional<KnownLuminance> per_unit = calibration.luminance_of_one_dn_per_s;
   MeasuredImage image = std::move(reduced.rate);
   if (calibration.flat.has_value()) {
-    EYEBOX_ASSIGN_OR_RETURN(
-        image, DivideByFlat(std::move(image), calibration.flat->response, options.flat_minimum));
+    const MeasuredImage& response = calibration.flat->response;
+    EYEBOX_ASSIGN_OR_RETURN(image, DivideByFlat(std::move(image), response, options.flat_minimum));
+    reduced.report.budget = WithFlat(reduced.report.budget, image, response);
     if (calibration.flat->luminance.has_value()) per_unit = calibration.flat->luminance;
     ReportInvalid(image, reduced.report);
   } else {

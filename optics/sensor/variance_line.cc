@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
+
+#include "optics/sensor/median.h"
 
 namespace eyebox::optics {
 namespace {
 
 constexpr double kQuantisationDn2 = 1.0 / 12;  // no measured variance of counts is known better
-constexpr double kHuberSigmas = 2.5;
+constexpr double kTrustedSigmas = 2.5;
 constexpr int kIterations = 30;
 
 struct Sums {
@@ -25,11 +28,19 @@ double StandardScore(const VarianceLine& line, const PhotonTransferPoint& point)
          (predicted * std::sqrt(2 / point.degrees_of_freedom));
 }
 
-double Weight(const VarianceLine& line, const PhotonTransferPoint& point) {
-  const double predicted = PredictedVariance(line, point.signal_dn);
-  const double score = StandardScore(line, point);
-  const double robust = score > kHuberSigmas ? kHuberSigmas / score : 1;
-  return robust * point.degrees_of_freedom / (2 * predicted * predicted);
+// Falls with the fourth power beyond the trusted scatter, so that neither the line nor its chi^2
+// feels a point far above. `scatter` is in standard deviations; infinite trusts every point.
+double Trust(double score, double scatter) {
+  const double excess = score / (kTrustedSigmas * scatter);
+  return excess > 1 ? 1 / (excess * excess * excess * excess) : 1;
+}
+
+double MedianScatter(std::span<const PhotonTransferPoint> points, const VarianceLine& line) {
+  std::vector<float> scores;
+  for (const PhotonTransferPoint& point : points) {
+    scores.push_back(static_cast<float>(std::abs(StandardScore(line, point))));
+  }
+  return std::max(1.4826 * Median(std::move(scores)), 1.0);
 }
 
 // From the median of the points' slopes: a start that a minority of textured points cannot lift.
@@ -51,10 +62,12 @@ VarianceLine StartingLine(std::span<const PhotonTransferPoint> points) {
   return line;
 }
 
-bool Improve(std::span<const PhotonTransferPoint> points, VarianceLine& line) {
+bool Improve(std::span<const PhotonTransferPoint> points, double scatter, VarianceLine& line) {
   Sums s;
   for (const PhotonTransferPoint& point : points) {
-    const double w = Weight(line, point);
+    const double predicted = PredictedVariance(line, point.signal_dn);
+    const double w = Trust(StandardScore(line, point), scatter) * point.degrees_of_freedom /
+                     (2 * predicted * predicted);
     s.w += w;
     s.ws += w * point.signal_dn;
     s.wss += w * point.signal_dn * point.signal_dn;
@@ -70,24 +83,41 @@ bool Improve(std::span<const PhotonTransferPoint> points, VarianceLine& line) {
   return true;
 }
 
-}  // namespace
-
-VarianceLine FitVarianceLine(std::span<const PhotonTransferPoint> points) {
-  if (points.size() < 2) return {};
-  VarianceLine line = StartingLine(points);
-  for (int i = 0; i < kIterations; ++i) {
-    if (!Improve(points, line)) return {};
-  }
+void ScaleByChi2(std::span<const PhotonTransferPoint> points, double scatter, VarianceLine& line) {
   double chi2 = 0;
+  double trusted = 0;
   for (const PhotonTransferPoint& point : points) {
     const double score = StandardScore(line, point);
-    chi2 += score * score;
+    const double trust = Trust(score, scatter);
+    chi2 += trust * score * score;
+    trusted += trust;
   }
-  line.reduced_chi2 = points.size() > 2 ? chi2 / static_cast<double>(points.size() - 2) : 0;
+  line.reduced_chi2 = trusted > 2 ? chi2 / (trusted - 2) : 0;
   const double scale = std::sqrt(std::max(line.reduced_chi2, 1.0));
   line.slope_sigma_dn *= scale;
   line.intercept_sigma_dn2 *= scale;
+}
+
+template <typename ScatterOf>
+VarianceLine Iterate(std::span<const PhotonTransferPoint> points, const ScatterOf& scatter_of) {
+  if (points.size() < 2) return {};
+  VarianceLine line = StartingLine(points);
+  for (int i = 0; i < kIterations; ++i) {
+    if (!Improve(points, scatter_of(line), line)) return {};
+  }
+  ScaleByChi2(points, scatter_of(line), line);
   return line;
+}
+
+}  // namespace
+
+VarianceLine FitVarianceLine(std::span<const PhotonTransferPoint> points) {
+  return Iterate(points,
+                 [](const VarianceLine&) { return std::numeric_limits<double>::infinity(); });
+}
+
+VarianceLine FitLowerVarianceLine(std::span<const PhotonTransferPoint> points) {
+  return Iterate(points, [&](const VarianceLine& line) { return MedianScatter(points, line); });
 }
 
 }  // namespace eyebox::optics

@@ -22,9 +22,13 @@ struct VarianceLine {
 };
 
 // Weighted least squares, each point weighted by the variance that the line predicts there, not by
-// its own (which would prefer the low ones); points far above the line, where texture adds to the
-// noise, lose weight after Huber. At least two points of different signal, else all zero.
+// its own (which would prefer the low ones). At least two points of different signal, else all
+// zero.
 VarianceLine FitVarianceLine(std::span<const PhotonTransferPoint> points);
+
+// The same for points that texture may lift: those far above the line, on the scale of the points'
+// own median scatter, lose their weight.
+VarianceLine FitLowerVarianceLine(std::span<const PhotonTransferPoint> points);
 
 }  // namespace eyebox::optics
 

@@ -1,0 +1,89 @@
+#include "optics/reduce/variance_budget.h"
+
+#include <algorithm>
+
+namespace eyebox::optics {
+namespace {
+
+constexpr size_t kSamples = 1 << 16;
+
+// Smallest stride that leaves at most kSamples, odd so that it meets every colour of a mosaic.
+size_t StrideFor(size_t pixels) { return ((pixels + kSamples - 1) / kSamples) | 1; }
+
+// The terms of one exposure's variance, (DN/s)^2; their sum is `variance`.
+VarianceBudget TermsOf(const NoiseModel& noise, const Setting& setting, int frames,
+                       double expected_dn, double dark_dn, double variance) {
+  const double per_s2 = 1 / (setting.exposure_s * setting.exposure_s);
+  const double excess_dn = std::max(expected_dn + dark_dn - noise.bias_dn, 0.0);
+  const double light_dn = std::clamp(expected_dn, 0.0, excess_dn);
+  const double all = noise.MeanVariance(excess_dn, frames);
+  const double shot_and_read = (noise.read_variance_dn2 + noise.gain_dn_per_e * excess_dn) / frames;
+  VarianceBudget terms;
+  terms.photon = noise.gain_dn_per_e * light_dn / frames * per_s2;
+  terms.read = noise.read_variance_dn2 / frames * per_s2;
+  terms.quantisation = (all - shot_and_read) * per_s2;
+  terms.dark = variance - terms.photon - terms.read - terms.quantisation;
+  return terms;
+}
+
+void AddScaled(const VarianceBudget& terms, double factor, VarianceBudget& sum) {
+  sum.photon += factor * terms.photon;
+  sum.read += factor * terms.read;
+  sum.quantisation += factor * terms.quantisation;
+  sum.dark += factor * terms.dark;
+  sum.flat += factor * terms.flat;
+}
+
+}  // namespace
+
+VarianceBudgetMeter::VarianceBudgetMeter(const NoiseModel& noise, ImageSize size)
+    : noise_(noise),
+      stride_(StrideFor(size.PixelCount())),
+      pixels_((size.PixelCount() + stride_ - 1) / stride_) {}
+
+void VarianceBudgetMeter::Add(const Exposure& exposure, const MeasuredImage& rate,
+                              const Image<float>& expected_rate_dn_s) {
+  const Setting& setting = exposure.light->setting;
+  for (size_t k = 0; k < pixels_.size(); ++k) {
+    const size_t i = k * stride_;
+    if (rate.mask.pixels()[i] != 0) continue;
+    const double variance = rate.variance.pixels()[i];
+    const VarianceBudget terms = TermsOf(noise_, setting, exposure.light->frames,
+                                         expected_rate_dn_s.pixels()[i] * setting.exposure_s,
+                                         exposure.dark->image_dn.value.pixels()[i], variance);
+    AddScaled(terms, 1 / (variance * variance), pixels_[k].terms);
+    pixels_[k].weight += 1 / variance;
+  }
+}
+
+VarianceBudget VarianceBudgetMeter::Mean() const {
+  const auto valid =
+      std::count_if(pixels_.begin(), pixels_.end(), [](const auto& p) { return p.weight > 0; });
+  VarianceBudget mean;
+  for (const PixelSums& pixel : pixels_) {
+    if (pixel.weight > 0) {
+      AddScaled(pixel.terms, 1 / (pixel.weight * static_cast<double>(valid)), mean);
+    }
+  }
+  return mean;
+}
+
+VarianceBudget WithFlat(const VarianceBudget& budget, const MeasuredImage& ratio,
+                        const MeasuredImage& response) {
+  const size_t pixels = ratio.mask.pixels().size();
+  double flat = 0;
+  double valid = 0;
+  for (size_t i = 0; i < pixels; i += StrideFor(pixels)) {
+    if (ratio.mask.pixels()[i] != 0) continue;
+    const double relative = ratio.value.pixels()[i] / response.value.pixels()[i];
+    flat += relative * relative * response.variance.pixels()[i] / ratio.variance.pixels()[i];
+    ++valid;
+  }
+  if (valid == 0) return budget;
+  VarianceBudget with_flat;
+  AddScaled(budget, 1 - flat / valid, with_flat);
+  with_flat.flat = flat / valid;
+  return with_flat;
+}
+
+}  // namespace eyebox::optics

@@ -1,0 +1,46 @@
+// Where the variance of a merged image comes from.
+#ifndef EYEBOX_OPTICS_REDUCE_VARIANCE_BUDGET_H_
+#define EYEBOX_OPTICS_REDUCE_VARIANCE_BUDGET_H_
+
+#include <cstddef>
+#include <vector>
+
+#include "capture/base/image.h"
+#include "optics/reduce/bracket_report.h"
+#include "optics/reduce/expected_rate.h"
+#include "optics/reduce/measured_image.h"
+#include "optics/sensor/noise_model.h"
+
+namespace eyebox::optics {
+
+// Follows an inverse-variance merge on evenly sampled pixels (65536 at most). With w = 1/v, a term
+// T of the exposures' variances v makes up sum(w^2 T) / sum(w) of the merged variance 1/sum(w).
+class VarianceBudgetMeter {
+ public:
+  VarianceBudgetMeter(const NoiseModel& noise, ImageSize size);
+
+  // An exposure and its rate image in DN/s, as it enters the merge.
+  void Add(const Exposure& exposure, const MeasuredImage& rate,
+           const Image<float>& expected_rate_dn_s);
+
+  // All zero if no sampled pixel is valid.
+  VarianceBudget Mean() const;
+
+ private:
+  struct PixelSums {
+    double weight = 0;
+    VarianceBudget terms;  // sums of w^2 T; flat stays 0
+  };
+
+  NoiseModel noise_;
+  size_t stride_;
+  std::vector<PixelSums> pixels_;
+};
+
+// The budget of `ratio`, an image that was divided by the flat `response`, from that of the image.
+VarianceBudget WithFlat(const VarianceBudget& budget, const MeasuredImage& ratio,
+                        const MeasuredImage& response);
+
+}  // namespace eyebox::optics
+
+#endif  // EYEBOX_OPTICS_REDUCE_VARIANCE_BUDGET_H_

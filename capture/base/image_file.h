@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
@@ -26,6 +27,8 @@ using Rgb8 = std::array<uint8_t, 3>;
 
 // Writes an 8-bit RGB PNG, through a temporary file and a rename. Errors: the errno of the file system.
 absl::Status WritePng(const std::filesystem::path& file, const Image<Rgb8>& image);
+// The same bytes in memory. Errors: Internal (the encoder refused).
+absl::StatusOr<std::string> EncodePng(const Image<Rgb8>& image);
 absl::StatusOr<Image<Rgb8>> ReadPngRgb8(const std::filesystem::path& file);
 
 }  // namespace eyebox

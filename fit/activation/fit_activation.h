@@ -1,0 +1,79 @@
+// Fits the activation of one place to its series of levels.
+#ifndef EYEBOX_FIT_ACTIVATION_FIT_ACTIVATION_H_
+#define EYEBOX_FIT_ACTIVATION_FIT_ACTIVATION_H_
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "fit/activation/level_series.h"
+#include "fit/base/activation.h"
+#include "fit/base/parameter.h"
+
+namespace eyebox::fit {
+
+enum class ActivationModel {
+  kPowerOffset,      // L = L0 + L1 v^gamma, v0 held at 0
+  kGammaWithCutoff,  // L = L0 + L1 max((v - v0) / (1 - v0), 0)^gamma, v0 >= 0
+};
+std::string_view NameOf(ActivationModel model);  // "power_offset", "gamma_with_cutoff"
+
+enum class Weighting {
+  kMeasuredSigma,  // 1 / sigma^2 of each reading
+  kRelative,       // 1 / max(L, floor)^2: equal relative errors
+  kUnweighted,     // as usually published; for comparison
+};
+std::string_view NameOf(Weighting weighting);  // "measured_sigma", "relative", "unweighted"
+
+struct FittedLevel {
+  LevelReading reading;
+  double fitted = 0;             // luminance of the fit
+  double relative_residual = 0;  // measured / fitted - 1
+};
+
+struct ActivationFit {
+  Activation activation;
+  ActivationModel model = ActivationModel::kGammaWithCutoff;
+  Weighting weighting = Weighting::kRelative;
+  // minimum_luminance (L0), luminance_range (L1), cutoff_drive (v0), gamma: always these four.
+  std::array<Parameter, 4> parameters;
+  // [4, 4] row-major, in the order of `parameters`; zero rows for a parameter that was held.
+  // With measured sigmas these are absolute, unless reduced chi-square is above 1: then scaled by
+  // it. With other weightings the scale is estimated from the residuals.
+  std::array<double, 16> covariance{};
+  std::vector<FittedLevel> levels;
+  double rms_relative = 0;                // of relative_residual over all levels
+  double leave_one_out_rms_relative = 0;  // interior levels, each predicted without itself
+  double chi_square = 0;                  // weighted sum of squares
+  int degrees_of_freedom = 0;
+  double aicc = 0;
+  std::string termination;  // why the solver stopped, in words
+};
+
+// Errors: those of LevelSeries::Validate(); InvalidArgument (kMeasuredSigma without sigmas);
+// FailedPrecondition (fewer levels than parameters + 1, no convergence: says what was tried).
+absl::StatusOr<ActivationFit> FitActivation(const LevelSeries& series, ActivationModel model,
+                                            Weighting weighting);
+
+struct ActivationChoice {
+  ActivationFit best;
+  std::vector<ActivationFit> tried;  // all models, the best one included
+  std::string reason;                // why the best one was taken, in words
+};
+
+struct ActivationOptions {
+  std::optional<ActivationModel> model;  // all are tried unless given
+  std::optional<Weighting> weighting;    // measured sigmas where the series has them, else relative
+};
+
+// The model with the smallest leave-one-out error; the simpler one where that is not clearly worse.
+// Errors: those of FitActivation.
+absl::StatusOr<ActivationChoice> ChooseActivation(const LevelSeries& series,
+                                                  const ActivationOptions& options = {});
+
+}  // namespace eyebox::fit
+
+#endif  // EYEBOX_FIT_ACTIVATION_FIT_ACTIVATION_H_

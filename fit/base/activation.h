@@ -14,12 +14,17 @@ struct Activation {
   double cutoff_drive = 0;       // v0
   double gamma = 2.2;
 
+  // Relative error below 1e-14 (gamma up to 8). NaN only for a drive that is NaN.
   double H(double drive) const;
   // The drive value at which H is `activation`, in [v0, 1]: v0 for activation <= 0 (the largest
-  // drive that still shows L0, so that the inverse is continuous), 1 for activation >= 1.
+  // drive that still shows L0, so that the inverse is continuous), 1 for activation >= 1. Relative
+  // error below 1e-12.
   double InverseH(double activation) const;
   double Luminance(double drive) const { return minimum_luminance + luminance_range * H(drive); }
-  // dL/d(L0, L1, v0, gamma) at `drive`; exact at drive = 0 and drive = v0, never NaN.
+  // dL/d(L0, L1, v0, gamma) at `drive`, each to 1e-12 relative. At and below v0 it is (1, 0, 0, 0):
+  // the limit 0 log 0 = 0 for gamma; for v0 the derivative towards larger v0, which alone exists at
+  // drive = v0 for gamma <= 1 (towards smaller v0 it is -L1 (1 - v) / (1 - v0)^2 for gamma = 1 and
+  // infinite below). Finite for every finite drive, never NaN.
   std::array<double, 4> LuminanceGradient(double drive) const;
 };
 

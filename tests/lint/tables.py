@@ -44,6 +44,8 @@ THIRD_PARTY = [
     Library("OpenCV core", r"opencv2/core(/.*)?(\.hpp)?", ("capture/*.cc", "optics/*.cc")),
     Library("OpenCV imgproc, calib3d", r"opencv2/(imgproc|calib3d)(/.*)?\.hpp", ("optics/*.cc",)),
     Library("OpenCV imgcodecs", r"opencv2/imgcodecs(/.*)?\.hpp", ("capture/base/image_file.cc",)),
+    # OpenCV decodes 8-bit TIFF by a call that goes on after errors and fills in black.
+    Library("libtiff", r"tiffio\.h", ("capture/base/tiff.cc",)),
     Library("Ceres", r"ceres/.*", ("fit/*.cc",)),
     Library("Eigen", r"Eigen/.*", ("fit/*.cc", "optics/*.cc")),
     Library("Protocol Buffers", r"google/protobuf/.*", ("service/*", "capture/recording/*")),

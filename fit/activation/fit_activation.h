@@ -21,6 +21,10 @@ enum class ActivationModel {
 };
 std::string_view NameOf(ActivationModel model);  // "power_offset", "gamma_with_cutoff"
 
+// Relative errors are taken of at least this share of the brightest reading: below it a display
+// is black, and instruments disagree.
+constexpr double kRelativeFloor = 1e-3;
+
 enum class Weighting {
   kMeasuredSigma,  // 1 / sigma^2 of each reading
   kRelative,       // 1 / max(L, floor)^2: equal relative errors
@@ -31,7 +35,7 @@ std::string_view NameOf(Weighting weighting);  // "measured_sigma", "relative", 
 struct FittedLevel {
   LevelReading reading;
   double fitted = 0;             // luminance of the fit
-  double relative_residual = 0;  // measured / fitted - 1
+  double relative_residual = 0;  // (measured - fitted) / max(measured, floor)
 };
 
 struct ActivationFit {
@@ -42,19 +46,23 @@ struct ActivationFit {
   std::array<Parameter, 4> parameters;
   // [4, 4] row-major, in the order of `parameters`; zero rows for a parameter that was held.
   // With measured sigmas these are absolute, unless reduced chi-square is above 1: then scaled by
-  // it. With other weightings the scale is estimated from the residuals.
+  // it. With other weightings the scale is estimated from the residuals. The series' scale
+  // uncertainty is added to L0 and L1. A parameter that ended at its bound (L0 = 0, v0 = 0; the
+  // termination says so) keeps the sigma it would have if the bound were not there.
   std::array<double, 16> covariance{};
   std::vector<FittedLevel> levels;
   double rms_relative = 0;                // of relative_residual over all levels
-  double leave_one_out_rms_relative = 0;  // interior levels, each predicted without itself
+  double leave_one_out_rms_relative = 0;  // interior levels, each predicted without any
+                                          // reading at its drive; of max(measured, floor)
   double chi_square = 0;                  // weighted sum of squares
   int degrees_of_freedom = 0;
-  double aicc = 0;
+  double aicc = 0;          // to compare models under one weighting; infinite for too few readings
   std::string termination;  // why the solver stopped, in words
 };
 
 // Errors: those of LevelSeries::Validate(); InvalidArgument (kMeasuredSigma without sigmas);
-// FailedPrecondition (fewer levels than parameters + 1, no convergence: says what was tried).
+// FailedPrecondition (fewer different drives than parameters + 1, gamma at its limits of 0.3 and 8,
+// parameters that the readings do not determine, no convergence: says what was tried).
 absl::StatusOr<ActivationFit> FitActivation(const LevelSeries& series, ActivationModel model,
                                             Weighting weighting);
 

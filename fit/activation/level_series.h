@@ -23,9 +23,9 @@ struct LevelSeries {
   double scale_relative_sigma = 0;     // common to all readings, not in their sigma
   std::string source;                  // a file or recording, for messages
 
-  // Errors: InvalidArgument naming source and reading (drive outside [0, 1], luminance negative or
-  // not finite, negative sigma, fewer than 4 different drives); FailedPrecondition (flat line: the
-  // luminance does not rise with the drive, so there is nothing to fit).
+  // Errors: InvalidArgument naming source and reading (drive outside [0, 1], drives not ascending,
+  // luminance or sigma negative or not finite, fewer than 4 different drives) or the source (a flat
+  // line or mere noise: the luminance does not rise with the drive, so there is nothing to fit).
   absl::Status Validate() const;
   // True if every reading has a sigma above 0.
   bool HasSigmas() const;

@@ -1,0 +1,98 @@
+#include "fit/activation/activation_problem.h"
+
+#include <algorithm>
+
+namespace eyebox::fit {
+namespace {
+
+constexpr double kStartingGammas[] = {1, 2.2, 4};
+constexpr double kDarkShare =
+    0.05;  // of white: a cutoff is sought below the first brighter reading
+
+std::vector<double> StartingCutoffs(const ActivationProblem& problem) {
+  std::vector<double> cutoffs = {0};
+  if (problem.model == ActivationModel::kPowerOffset) return cutoffs;
+  const double white = problem.readings.back().luminance;
+  double previous = 0;
+  for (const WeightedReading& reading : problem.readings) {
+    if (reading.drive > previous) cutoffs.push_back(0.5 * (previous + reading.drive));
+    previous = reading.drive;
+    if (reading.luminance > kDarkShare * white) break;
+  }
+  return cutoffs;
+}
+
+struct WeightedMeans {
+  double h = 0;
+  double luminance = 0;
+};
+
+WeightedMeans MeansOf(const ActivationProblem& problem, const Activation& shape) {
+  double weights = 0;
+  WeightedMeans sums;
+  for (const WeightedReading& reading : problem.readings) {
+    const double weight = reading.root_weight * reading.root_weight;
+    weights += weight;
+    sums.h += weight * shape.H(reading.drive);
+    sums.luminance += weight * reading.luminance;
+  }
+  return {sums.h / weights, sums.luminance / weights};
+}
+
+// The regression of luminance on h about a given point.
+double SlopeAbout(const ActivationProblem& problem, const Activation& shape,
+                  const WeightedMeans& about) {
+  double products = 0;
+  double squares = 0;
+  for (const WeightedReading& reading : problem.readings) {
+    const double weight = reading.root_weight * reading.root_weight;
+    const double h = shape.H(reading.drive) - about.h;
+    products += weight * h * (reading.luminance - about.luminance);
+    squares += weight * h * h;
+  }
+  return squares > 0 ? products / squares : 0;
+}
+
+Activation WithBestLuminances(const ActivationProblem& problem, Activation shape) {
+  const WeightedMeans means = MeansOf(problem, shape);
+  shape.luminance_range = SlopeAbout(problem, shape, means);
+  shape.minimum_luminance = means.luminance - shape.luminance_range * means.h;
+  if (shape.minimum_luminance < 0) {
+    shape.minimum_luminance = 0;
+    shape.luminance_range = SlopeAbout(problem, shape, {0, 0});
+  }
+  if (!(shape.luminance_range > 0)) shape.luminance_range = problem.readings.back().luminance;
+  return shape;
+}
+
+}  // namespace
+
+std::vector<double> ActivationProblem::Drives() const {
+  std::vector<double> drives;
+  for (const WeightedReading& reading : readings) {
+    if (drives.empty() || reading.drive > drives.back()) drives.push_back(reading.drive);
+  }
+  return drives;
+}
+
+double ActivationProblem::SumOfSquares(const Activation& activation) const {
+  double sum = 0;
+  for (const WeightedReading& reading : readings) {
+    const double residual =
+        reading.root_weight * (activation.Luminance(reading.drive) - reading.luminance);
+    sum += residual * residual;
+  }
+  return sum;
+}
+
+std::vector<Activation> StartingPoints(const ActivationProblem& problem) {
+  std::vector<Activation> starts;
+  for (const double cutoff : StartingCutoffs(problem)) {
+    for (const double gamma : kStartingGammas) {
+      starts.push_back(WithBestLuminances(problem, {0, 1, cutoff, gamma}));
+    }
+  }
+  return starts;
+}
+
+}  // namespace eyebox::fit

@@ -1,0 +1,148 @@
+#include "fit/activation/fit_activation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "capture/base/status.h"
+#include "fit/activation/activation_problem.h"
+
+namespace eyebox::fit {
+namespace {
+
+double White(const LevelSeries& series) {
+  double white = 0;
+  for (const LevelReading& reading : series.readings) white = std::max(white, reading.luminance);
+  return white;
+}
+
+double RelativeFloor(const LevelSeries& series) { return kRelativeFloor * White(series); }
+
+double RootWeight(const LevelReading& reading, Weighting weighting, double floor) {
+  if (weighting == Weighting::kMeasuredSigma) return 1 / reading.luminance_sigma;
+  if (weighting == Weighting::kRelative) return 1 / std::max(reading.luminance, floor);
+  return 1;
+}
+
+absl::Status CheckSigmas(const LevelSeries& series) {
+  for (size_t i = 0; i < series.readings.size(); ++i) {
+    if (series.readings[i].luminance_sigma > 0) continue;
+    return BadInput(absl::StrCat(series.source, ", reading ", i + 1),
+                    "it has no standard uncertainty to be weighted with",
+                    "give one above 0 for every reading, or weight relatively");
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<ActivationProblem> Pose(const LevelSeries& series, ActivationModel model,
+                                       Weighting weighting) {
+  EYEBOX_RETURN_IF_ERROR(series.Validate());
+  if (weighting == Weighting::kMeasuredSigma) EYEBOX_RETURN_IF_ERROR(CheckSigmas(series));
+  ActivationProblem problem{model, {}};
+  for (const LevelReading& reading : series.readings) {
+    problem.readings.push_back(
+        {reading.drive, reading.luminance, RootWeight(reading, weighting, RelativeFloor(series))});
+  }
+  const size_t drives = problem.Drives().size();
+  if (drives <= static_cast<size_t>(problem.ParameterCount())) {
+    return Rejected(
+        series.source,
+        absl::StrCat(std::string(NameOf(model)), " has ", problem.ParameterCount(),
+                     " parameters, and the series only ", drives, " different drive values"),
+        "measure more levels");
+  }
+  return problem;
+}
+
+absl::Status CheckExponent(const LevelSeries& series, const ActivationSolution& solution) {
+  const double gamma = solution.activation.gamma;
+  if (gamma > kGammaMin * (1 + 1e-6) && gamma < kGammaMax * (1 - 1e-6)) return absl::OkStatus();
+  return Rejected(series.source,
+                  absl::StrCat("the best exponent lies at the limit of ", kGammaMin, " to ",
+                               kGammaMax, ": no activation of a display has this form"),
+                  "check the order of the levels and the readings between black and white");
+}
+
+// Akaike's criterion for small samples; an estimated scale of the noise counts as a parameter.
+double Aicc(const ActivationFit& fit, int free_parameters) {
+  const auto n = static_cast<double>(fit.levels.size());
+  const bool scale_is_known = fit.weighting == Weighting::kMeasuredSigma;
+  const double k = free_parameters + (scale_is_known ? 0 : 1);
+  if (n - k - 1 <= 0) return std::numeric_limits<double>::infinity();
+  const double least = n * std::numeric_limits<double>::min();
+  const double misfit =
+      scale_is_known ? fit.chi_square : n * std::log(std::max(fit.chi_square, least) / n);
+  return misfit + 2 * k + 2 * k * (k + 1) / (n - k - 1);
+}
+
+void ScaleCovariance(const LevelSeries& series, ActivationFit& fit) {
+  double scale = fit.chi_square / fit.degrees_of_freedom;
+  if (fit.weighting == Weighting::kMeasuredSigma) scale = std::max(scale, 1.0);
+  for (double& element : fit.covariance) element *= scale;
+  const double luminances[] = {fit.activation.minimum_luminance, fit.activation.luminance_range};
+  const double scale_variance = series.scale_relative_sigma * series.scale_relative_sigma;
+  for (int i = 0; i < 2; ++i) {
+    for (int j = 0; j < 2; ++j) {
+      fit.covariance[4 * i + j] += scale_variance * luminances[i] * luminances[j];
+    }
+  }
+}
+
+void ListParameters(const LevelSeries& series, ActivationFit& fit) {
+  const Activation& a = fit.activation;
+  fit.parameters = {{{"minimum_luminance", a.minimum_luminance, 0, series.luminance_unit},
+                     {"luminance_range", a.luminance_range, 0, series.luminance_unit},
+                     {"cutoff_drive", a.cutoff_drive, 0, "1"},
+                     {"gamma", a.gamma, 0, "1"}}};
+  for (int i = 0; i < 4; ++i) fit.parameters[i].sigma = std::sqrt(fit.covariance[5 * i]);
+}
+
+void ListLevels(const LevelSeries& series, ActivationFit& fit) {
+  double sum = 0;
+  for (const LevelReading& reading : series.readings) {
+    const double fitted = fit.activation.Luminance(reading.drive);
+    const double relative =
+        (reading.luminance - fitted) / std::max(reading.luminance, RelativeFloor(series));
+    fit.levels.push_back({reading, fitted, relative});
+    sum += relative * relative;
+  }
+  fit.rms_relative = std::sqrt(sum / static_cast<double>(fit.levels.size()));
+}
+
+}  // namespace
+
+std::string_view NameOf(ActivationModel model) {
+  return model == ActivationModel::kPowerOffset ? "power_offset" : "gamma_with_cutoff";
+}
+
+std::string_view NameOf(Weighting weighting) {
+  if (weighting == Weighting::kMeasuredSigma) return "measured_sigma";
+  return weighting == Weighting::kRelative ? "relative" : "unweighted";
+}
+
+absl::StatusOr<ActivationFit> FitActivation(const LevelSeries& series, ActivationModel model,
+                                            Weighting weighting) {
+  EYEBOX_ASSIGN_OR_RETURN(const ActivationProblem problem, Pose(series, model, weighting));
+  EYEBOX_ASSIGN_OR_RETURN(ActivationSolution solution,
+                          SolveActivation(problem, StartingPoints(problem)));
+  EYEBOX_RETURN_IF_ERROR(CheckExponent(series, solution));
+  ActivationFit fit;
+  fit.activation = solution.activation;
+  fit.model = model;
+  fit.weighting = weighting;
+  fit.termination = std::move(solution.termination);
+  fit.chi_square = solution.sum_of_squares;
+  fit.degrees_of_freedom = static_cast<int>(series.readings.size()) - problem.ParameterCount();
+  EYEBOX_ASSIGN_OR_RETURN(fit.covariance, ActivationCovariance(problem, fit.activation));
+  ScaleCovariance(series, fit);
+  ListParameters(series, fit);
+  ListLevels(series, fit);
+  fit.aicc = Aicc(fit, problem.ParameterCount());
+  EYEBOX_ASSIGN_OR_RETURN(fit.leave_one_out_rms_relative,
+                          LeaveOneOutError(problem, fit.activation, RelativeFloor(series)));
+  return fit;
+}
+
+}  // namespace eyebox::fit

@@ -100,12 +100,13 @@ void ListParameters(const LevelSeries& series, ActivationFit& fit) {
 }
 
 void ListLevels(const LevelSeries& series, ActivationFit& fit) {
+  const double floor = RelativeFloor(series);
   double sum = 0;
   for (const LevelReading& reading : series.readings) {
     const double fitted = fit.activation.Luminance(reading.drive);
-    const double relative =
-        (reading.luminance - fitted) / std::max(reading.luminance, RelativeFloor(series));
-    fit.levels.push_back({reading, fitted, relative});
+    const double residual = reading.luminance - fitted;
+    fit.levels.push_back({reading, fitted, residual / std::max(fitted, floor)});
+    const double relative = residual / std::max(reading.luminance, floor);
     sum += relative * relative;
   }
   fit.rms_relative = std::sqrt(sum / static_cast<double>(fit.levels.size()));

@@ -35,7 +35,7 @@ std::string_view NameOf(Weighting weighting);  // "measured_sigma", "relative", 
 struct FittedLevel {
   LevelReading reading;
   double fitted = 0;             // luminance of the fit
-  double relative_residual = 0;  // (measured - fitted) / max(measured, floor)
+  double relative_residual = 0;  // (measured - fitted) / max(fitted, floor)
 };
 
 struct ActivationFit {
@@ -51,7 +51,7 @@ struct ActivationFit {
   // termination says so) keeps the sigma it would have if the bound were not there.
   std::array<double, 16> covariance{};
   std::vector<FittedLevel> levels;
-  double rms_relative = 0;                // of relative_residual over all levels
+  double rms_relative = 0;  // over all readings, of (fitted - measured) / max(measured, floor)
   double leave_one_out_rms_relative = 0;  // interior levels, each predicted without any
                                           // reading at its drive; of max(measured, floor)
   double chi_square = 0;                  // weighted sum of squares

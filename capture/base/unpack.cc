@@ -37,9 +37,10 @@ struct GigE {
   static constexpr size_t kGroupBytes = 6;
   static uint64_t Spread(uint64_t w) {
     constexpr uint64_t kLow = (1u << kLowBits) - 1;
-    return ((w & 0xFF) << kLowBits) | (w >> 8 & kLow) | ((w >> 16 & 0xFF) << (16 + kLowBits)) |
-           (w >> 12 & kLow) << 16 | ((w >> 24 & 0xFF) << (32 + kLowBits)) | (w >> 32 & kLow) << 32 |
-           ((w >> 40 & 0xFF) << (48 + kLowBits)) | (w >> 36 & kLow) << 48;
+    constexpr uint64_t kHigh = uint64_t{0xFF} << kLowBits;
+    return (w << kLowBits & (kHigh | kHigh << 16)) |
+           (w << (8 + kLowBits) & (kHigh << 32 | kHigh << 48)) |  //
+           (w >> 8 & kLow) | (w << 4 & kLow << 16) | (w & kLow << 32) | (w << 12 & kLow << 48);
   }
 };
 

@@ -32,8 +32,9 @@ absl::StatusOr<optics::NoiseModel> MeasureNoise(capture::RecordingReader& record
   optics::PhotonTransfer transfer(*shortest, defects.defective);
   const auto captures = recording.Captures();
   for (size_t i = 0; i < captures.size(); ++i) {
-    EYEBOX_RETURN_IF_ERROR(watcher.Reach(static_cast<double>(i) / captures.size(),
-                                         "noise and gain from repeated frames"));
+    EYEBOX_RETURN_IF_ERROR(
+        watcher.Reach(static_cast<double>(i) / static_cast<double>(captures.size()),
+                      "noise and gain from repeated frames"));
     transfer.BeginCapture(captures[i].spec.kind);
     EYEBOX_RETURN_IF_ERROR(recording.VisitFrames(
         captures[i], [&](const Frame& frame) { return transfer.AddFrame(frame.view); }));
@@ -57,9 +58,8 @@ absl::StatusOr<std::optional<optics::FlatField>> MeasureFlatOf(
     }
   }
   EYEBOX_ASSIGN_OR_RETURN(const auto stacks, StackCaptures(recording, captures));
-  EYEBOX_ASSIGN_OR_RETURN(
-      optics::FlatField flat,
-      optics::MeasureFlat(stacks, calibration, LuminanceOf(captures[0]->spec)));
+  EYEBOX_ASSIGN_OR_RETURN(optics::FlatField flat,
+                          optics::MeasureFlat(stacks, calibration, LuminanceOf(captures[0]->spec)));
   return flat;
 }
 
@@ -71,9 +71,8 @@ absl::StatusOr<optics::Calibration> CalibrateCamera(capture::RecordingReader& re
   EYEBOX_RETURN_IF_ERROR(watcher.Reach(0, "dark frames and hot pixels"));
   EYEBOX_ASSIGN_OR_RETURN(const std::vector<optics::Stack> darks, StackDarks(recording));
   EYEBOX_ASSIGN_OR_RETURN(calibration.defects, optics::FindHotPixels(darks));
-  EYEBOX_ASSIGN_OR_RETURN(
-      calibration.noise,
-      MeasureNoise(recording, darks, calibration.defects, watcher.Part(0.1, 0.9)));
+  EYEBOX_ASSIGN_OR_RETURN(calibration.noise, MeasureNoise(recording, darks, calibration.defects,
+                                                          watcher.Part(0.1, 0.9)));
   for (const optics::Stack& dark : darks) {
     EYEBOX_ASSIGN_OR_RETURN(optics::DarkFrame frame, optics::MeasureDark(dark, calibration.noise));
     calibration.darks.push_back(std::move(frame));

@@ -1,0 +1,132 @@
+#include "service/steps/levels.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "capture/base/status.h"
+#include "service/steps/reference_disk.h"
+
+namespace eyebox::service {
+namespace {
+
+// A level that lost more of the field than this says nothing about the field.
+constexpr double kLargestInvalidShare = 0.5;
+
+double DriveOf(const StimulusCaptures& group) { return (*group.stimulus.drive)[0]; }
+
+std::string NameOf(const StimulusCaptures& group) {
+  return absl::StrFormat("grey level, drive %.6g", DriveOf(group));
+}
+
+bool IsUsable(const optics::ReducedLevel& level) {
+  const Image<uint8_t>& mask = level.luminance.image.mask;
+  const std::vector<size_t> disk = ReferenceDiskPixels(mask.size());
+  return level.report.invalid_share <= kLargestInvalidShare &&
+         std::any_of(disk.begin(), disk.end(), [&](size_t i) { return mask.pixels()[i] == 0; });
+}
+
+std::string WhyUnusable(const StimulusCaptures& group, const optics::ReducedLevel& level) {
+  return absl::StrFormat(
+      "%s was left out: %.1f %% of the pixels saturate in every exposure and %.1f %% are dark in "
+      "every exposure; add a %s exposure",
+      NameOf(group), 100 * level.report.all_saturated_share, 100 * level.report.all_dark_share,
+      level.report.all_saturated_share >= level.report.all_dark_share ? "shorter" : "longer");
+}
+
+absl::Status NoUsableLevel(const std::vector<std::string>& reasons) {
+  return Rejected("grey levels", absl::StrCat("none is usable: ", absl::StrJoin(reasons, "; ")),
+                  "record them again");
+}
+
+absl::Status InLevel(const StimulusCaptures& group, const absl::Status& status) {
+  return absl::Status(status.code(), absl::StrCat(NameOf(group), ": ", status.message()));
+}
+
+void AddToStack(const optics::ReducedLevel& level, double drive, MeasuredLevels& levels) {
+  const optics::MeasuredImage& image = level.luminance.image;
+  const auto values = image.value.pixels();
+  levels.size = image.size();
+  levels.drives.push_back(drive);
+  levels.luminance.insert(levels.luminance.end(), values.begin(), values.end());
+  levels.valid.resize(values.size(), 1);
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (image.mask.pixels()[i] != 0) levels.valid[i] = 0;
+  }
+}
+
+}  // namespace
+
+absl::StatusOr<std::string> ChooseSeries(const capture::RecordingReader& recording,
+                                         const std::optional<std::string>& asked) {
+  if (asked) return *asked;
+  std::set<std::string> names;
+  for (const auto* entry : CapturesOfKind(recording, FrameKind::kLight)) {
+    names.insert(entry->spec.series);
+  }
+  if (names.empty() || names.contains("")) return "";
+  if (names.size() == 1) return *names.begin();
+  return Missing("main series", "the recording holds none, but several others",
+                 "choose one with --series: " + absl::StrJoin(names, ", "));
+}
+
+absl::StatusOr<optics::ReducedLevel> ReduceCaptures(capture::RecordingReader& recording,
+                                                    const StimulusCaptures& group,
+                                                    const optics::Calibration& calibration) {
+  EYEBOX_ASSIGN_OR_RETURN(const auto stacks, StackCaptures(recording, group.captures));
+  return optics::ReduceLevel(stacks, calibration);
+}
+
+absl::StatusOr<MeasuredLevels> ReduceGreyLevels(capture::RecordingReader& recording,
+                                                const std::string& series,
+                                                const optics::Calibration& calibration,
+                                                const Watcher& watcher) {
+  EYEBOX_ASSIGN_OR_RETURN(const auto groups, GreyLevels(recording, series));
+  MeasuredLevels levels;
+  std::vector<DiskReading> readings;
+  for (size_t i = 0; i < groups.size(); ++i) {
+    EYEBOX_RETURN_IF_ERROR(
+        watcher.Reach(static_cast<double>(i) / static_cast<double>(groups.size()),
+                      absl::StrFormat("luminance of %d levels", groups.size())));
+    auto reduced = ReduceCaptures(recording, groups[i], calibration);
+    if (!reduced.ok()) return InLevel(groups[i], reduced.status());
+    if (!IsUsable(*reduced)) {
+      levels.warnings.push_back(WhyUnusable(groups[i], *reduced));
+      continue;
+    }
+    const double drive = DriveOf(groups[i]);
+    readings.push_back(ReadReferenceDisk(reduced->luminance, calibration, drive));
+    AddToStack(*reduced, drive, levels);
+    levels.reference = {drive, *std::move(reduced)};
+  }
+  if (readings.empty()) return NoUsableLevel(levels.warnings);
+  const optics::LuminanceImage& brightest = levels.reference.reduced.luminance;
+  EYEBOX_ASSIGN_OR_RETURN(
+      levels.series, MakeLevelSeries(readings, brightest.scale_relative_sigma, brightest.image.unit,
+                                     "full field, image centre"));
+  return levels;
+}
+
+absl::StatusOr<GreyLevel> ReduceBrightestLevel(capture::RecordingReader& recording,
+                                               const std::string& series,
+                                               const optics::Calibration& calibration,
+                                               const Watcher& watcher) {
+  EYEBOX_ASSIGN_OR_RETURN(auto groups, GreyLevels(recording, series));
+  std::reverse(groups.begin(), groups.end());
+  std::vector<std::string> reasons;
+  for (size_t i = 0; i < groups.size(); ++i) {
+    EYEBOX_RETURN_IF_ERROR(
+        watcher.Reach(static_cast<double>(i) / static_cast<double>(groups.size()),
+                      "luminance of the brightest level"));
+    auto reduced = ReduceCaptures(recording, groups[i], calibration);
+    if (!reduced.ok()) return InLevel(groups[i], reduced.status());
+    if (IsUsable(*reduced)) return GreyLevel{DriveOf(groups[i]), *std::move(reduced)};
+    reasons.push_back(WhyUnusable(groups[i], *reduced));
+  }
+  return NoUsableLevel(reasons);
+}
+
+}  // namespace eyebox::service

@@ -1,0 +1,103 @@
+#include "service/steps/reference_disk.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "capture/base/status.h"
+#include "optics/uniformity/uniformity_map.h"
+
+namespace eyebox::service {
+namespace {
+
+constexpr double kBlackSigmas = 3;
+
+std::vector<size_t> PixelsWithAllLevels(std::span<const DiskReading> levels) {
+  std::vector<size_t> pixels;
+  for (size_t i = 0; i < levels[0].luminance.size(); ++i) {
+    const bool everywhere = std::all_of(levels.begin(), levels.end(), [i](const auto& level) {
+      return std::isfinite(level.luminance[i]);
+    });
+    if (everywhere) pixels.push_back(i);
+  }
+  return pixels;
+}
+
+double SumOver(const std::vector<size_t>& pixels, const std::vector<double>& values) {
+  double sum = 0;
+  for (const size_t i : pixels) sum += values[i];
+  return sum;
+}
+
+fit::LevelReading MeanOf(const DiskReading& level, const std::vector<size_t>& pixels) {
+  const auto count = static_cast<double>(pixels.size());
+  fit::LevelReading reading;
+  reading.drive = level.drive;
+  reading.luminance = SumOver(pixels, level.luminance) / count;
+  reading.luminance_sigma = std::sqrt(SumOver(pixels, level.own_variance)) / count;
+  if (reading.luminance < 0 && reading.luminance > -kBlackSigmas * reading.luminance_sigma) {
+    reading.luminance = 0;
+  }
+  return reading;
+}
+
+}  // namespace
+
+std::vector<size_t> ReferenceDiskPixels(ImageSize size) {
+  const optics::UniformityOptions options;
+  const double centre_x = 0.5 * (size.width_px - 1);
+  const double centre_y = 0.5 * (size.height_px - 1);
+  const double radius =
+      std::max(options.reference_radius_fraction * std::min(size.width_px, size.height_px), 1.0);
+  std::vector<size_t> pixels;
+  for (int y = 0; y < size.height_px; ++y) {
+    for (int x = 0; x < size.width_px; ++x) {
+      if (std::hypot(x - centre_x, y - centre_y) > radius) continue;
+      pixels.push_back(static_cast<size_t>(y) * size.width_px + x);
+    }
+  }
+  return pixels;
+}
+
+DiskReading ReadReferenceDisk(const optics::LuminanceImage& image,
+                              const optics::Calibration& calibration, double drive) {
+  DiskReading level;
+  level.drive = drive;
+  for (const size_t i : ReferenceDiskPixels(image.image.size())) {
+    const double luminance = image.image.value.pixels()[i];  // NaN where masked
+    const double variance = image.image.variance.pixels()[i];
+    double flat = 0;
+    if (calibration.flat) {
+      const optics::MeasuredImage& response = calibration.flat->response;
+      const double relative = luminance / response.value.pixels()[i];
+      flat = relative * relative * response.variance.pixels()[i];
+    }
+    level.luminance.push_back(luminance);
+    // Single precision may lose the difference where the flat is nearly all of the variance.
+    level.own_variance.push_back(std::max(variance - flat, 1e-6 * variance));
+    level.flat_variance.push_back(flat);
+  }
+  return level;
+}
+
+absl::StatusOr<fit::LevelSeries> MakeLevelSeries(std::span<const DiskReading> levels,
+                                                 double scale_relative_sigma,
+                                                 const std::string& unit,
+                                                 const std::string& source) {
+  const std::vector<size_t> pixels =
+      levels.empty() ? std::vector<size_t>() : PixelsWithAllLevels(levels);
+  if (pixels.empty()) {
+    return Rejected(source, "no pixel at the image centre has a value at every level",
+                    "record exposures that neither saturate nor vanish there");
+  }
+  fit::LevelSeries series;
+  for (const DiskReading& level : levels) series.readings.push_back(MeanOf(level, pixels));
+  const DiskReading& brightest = levels.back();
+  const double flat_relative_sigma =
+      std::sqrt(SumOver(pixels, brightest.flat_variance)) / SumOver(pixels, brightest.luminance);
+  series.scale_relative_sigma = std::hypot(scale_relative_sigma, flat_relative_sigma);
+  series.luminance_unit = unit;
+  series.source = source;
+  return series;
+}
+
+}  // namespace eyebox::service

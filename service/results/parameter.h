@@ -13,8 +13,7 @@
 namespace eyebox::service {
 
 inline void AddParameter(google::protobuf::RepeatedPtrField<v1::Parameter>& parameters,
-                         std::string_view name, double value, double sigma,
-                         std::string_view unit) {
+                         std::string_view name, double value, double sigma, std::string_view unit) {
   v1::Parameter& parameter = *parameters.Add();
   parameter.set_name(std::string(name));
   parameter.set_value(value);

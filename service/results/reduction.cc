@@ -86,12 +86,11 @@ void AddPairWarnings(const optics::BracketReport& report, v1::ReduceResult& resu
 
 absl::Status AddMaps(const optics::MeasuredImage& image, const std::filesystem::path& folder,
                      v1::ReduceResult& result) {
+  EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(),
+                          WriteMap(folder, "luminance.npy", "luminance", image.unit, image.value));
   EYEBOX_ASSIGN_OR_RETURN(
       *result.add_maps(),
-      WriteMap(folder, "luminance.npy", "luminance", image.unit, image.value));
-  EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(), WriteMap(folder, "luminance_sigma.npy",
-                                                       "luminance_sigma", image.unit,
-                                                       Sigmas(image)));
+      WriteMap(folder, "luminance_sigma.npy", "luminance_sigma", image.unit, Sigmas(image)));
   EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(),
                           WriteMap(folder, "mask.npy", "mask", "1", MaskAsFloat(image)));
   return absl::OkStatus();

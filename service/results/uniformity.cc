@@ -39,30 +39,47 @@ Image<float> Sigmas(const Image<float>& variance) {
   return sigma;
 }
 
+// Smallest and largest g of the smooth model over the valid pixels.
+void AddExtremes(const optics::UniformityMap& map,
+                 google::protobuf::RepeatedPtrField<v1::Parameter>& parameters) {
+  const Image<float> values = map.smooth.Values();
+  const Image<float> sigmas = map.smooth.Sigmas();
+  std::optional<size_t> lowest;
+  std::optional<size_t> highest;
+  for (size_t i = 0; i < values.pixels().size(); ++i) {
+    if (map.raw.mask.pixels()[i] != 0) continue;
+    const float g = values.pixels()[i];
+    if (!lowest || g < values.pixels()[*lowest]) lowest = i;
+    if (!highest || g > values.pixels()[*highest]) highest = i;
+  }
+  if (!lowest) return;
+  AddParameter(parameters, "g_minimum", values.pixels()[*lowest], sigmas.pixels()[*lowest], "1");
+  AddParameter(parameters, "g_maximum", values.pixels()[*highest], sigmas.pixels()[*highest], "1");
+}
+
 void AddFigures(const optics::UniformityMap& map, v1::UniformityResult& result) {
   auto& parameters = *result.mutable_parameters();
-  AddParameter(parameters, "uniformity_9_point", map.nine_points.uniformity,
-               map.nine_points.sigma, "1");
+  AddParameter(parameters, "uniformity_9_point", map.nine_points.uniformity, map.nine_points.sigma,
+               "1");
   AddParameter(parameters, "nonuniformity_9_point", map.nine_points.nonuniformity,
                map.nine_points.sigma, "1");
   AddParameter(parameters, "uniformity_13_point", map.thirteen_points.uniformity,
                map.thirteen_points.sigma, "1");
   AddParameter(parameters, "nonuniformity_13_point", map.thirteen_points.nonuniformity,
                map.thirteen_points.sigma, "1");
+  AddExtremes(map, parameters);
 }
 
 absl::Status AddMaps(const optics::UniformityMap& map, const std::filesystem::path& folder,
                      v1::UniformityResult& result) {
   EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(),
                           WriteMap(folder, "uniformity_g.npy", "g", "1", map.raw.value));
-  EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(), WriteMap(folder, "uniformity_g_sigma.npy",
-                                                       "g_sigma", "1", Sigmas(map.raw.variance)));
-  EYEBOX_ASSIGN_OR_RETURN(
-      *result.add_maps(),
-      WriteMap(folder, "uniformity_g_smooth.npy", "g_smooth", "1", map.smooth.Values()));
-  EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(),
-                          WriteMap(folder, "uniformity_g_smooth_sigma.npy", "g_smooth_sigma", "1",
-                                   map.smooth.Sigmas()));
+  EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(), WriteMap(folder, "uniformity_g_sigma.npy", "g_sigma",
+                                                       "1", Sigmas(map.raw.variance)));
+  EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(), WriteMap(folder, "uniformity_g_smooth.npy",
+                                                       "g_smooth", "1", map.smooth.Values()));
+  EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(), WriteMap(folder, "uniformity_g_smooth_sigma.npy",
+                                                       "g_smooth_sigma", "1", map.smooth.Sigmas()));
   return absl::OkStatus();
 }
 
@@ -92,8 +109,9 @@ absl::StatusOr<v1::UniformityResult> DescribeUniformity(
   result.set_invalid_pixels(static_cast<int32_t>(optics::CountFlagged(map.raw, 0xFF)));
   AddAll(*result.mutable_history(), map.raw.history);
   if (map.residual_rms > kNotedResidualExcess * map.residual_rms_expected) {
-    result.add_warnings("raw g departs from the smooth model by more than its noise: use the raw "
-                        "map where texture matters");
+    result.add_warnings(
+        "raw g departs from the smooth model by more than its noise: use the raw "
+        "map where texture matters");
   }
   if (!full_field.flat_corrected) {
     result.add_warnings("no flat was recorded: the camera's own vignetting is part of g");

@@ -18,16 +18,20 @@ absl::StatusOr<std::string> ToJson(const google::protobuf::Message& message) {
   return json;
 }
 
+absl::Status ParseJson(std::string_view json, std::string_view where,
+                       google::protobuf::Message& message) {
+  const auto status = google::protobuf::util::JsonStringToMessage(
+      google::protobuf::StringPiece(json.data(), json.size()), &message);
+  if (status.ok()) return absl::OkStatus();
+  return BadInput(
+      where,
+      "is not a " + message.GetDescriptor()->name() + " in JSON: " + std::string(status.message()),
+      "give what eyebox wrote");
+}
+
 absl::Status ReadJson(const std::filesystem::path& file, google::protobuf::Message& message) {
   EYEBOX_ASSIGN_OR_RETURN(const std::string json, ReadWholeFile(file));
-  const auto status = google::protobuf::util::JsonStringToMessage(json, &message);
-  if (!status.ok()) {
-    return BadInput(file.string(),
-                    "is not a " + message.GetDescriptor()->name() +
-                        " in JSON: " + std::string(status.message()),
-                    "give the file that eyebox wrote");
-  }
-  return absl::OkStatus();
+  return ParseJson(json, file.string(), message);
 }
 
 }  // namespace eyebox::service

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
@@ -14,6 +15,10 @@
 namespace eyebox::service {
 
 absl::StatusOr<std::string> ToJson(const google::protobuf::Message& message);
+
+// Errors: InvalidArgument naming `where` the text came from.
+absl::Status ParseJson(std::string_view json, std::string_view where,
+                       google::protobuf::Message& message);
 
 // Errors: InvalidArgument naming the file; NotFound.
 absl::Status ReadJson(const std::filesystem::path& file, google::protobuf::Message& message);

@@ -1,0 +1,238 @@
+#include "service/pipeline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "capture/base/clock.h"
+#include "capture/base/file.h"
+#include "capture/base/status.h"
+#include "capture/camera/sim/truth.h"
+#include "capture/plan.h"
+#include "capture/recording/reader.h"
+#include "fit/activation/fit_activation.h"
+#include "fit/cube/design_table.h"
+#include "fit/cube/table_file.h"
+#include "fit/field/common_exponent.h"
+#include "optics/uniformity/uniformity_map.h"
+#include "service/report/report.h"
+#include "service/result_json.h"
+#include "service/results/activation.h"
+#include "service/results/cube.h"
+#include "service/results/parameter.h"
+#include "service/results/reduction.h"
+#include "service/results/report_input.h"
+#include "service/results/uniformity.h"
+#include "service/steps/calibrate.h"
+#include "service/steps/levels.h"
+#include "service/steps/record_plan.h"
+#include "service/steps/within.h"
+
+namespace eyebox::service {
+namespace {
+
+// What the steps find, in the order in which they find it.
+struct Findings {
+  optics::Calibration calibration;
+  MeasuredLevels levels;
+  optics::UniformityMap map;
+  fit::ActivationChoice activation;
+  fit::CommonExponentFit field;
+  std::vector<fit::TableDesign> tables;
+};
+
+absl::StatusOr<Findings> Measure(capture::RecordingReader& recording, const RunOptions& options,
+                                 const Watcher& watcher) {
+  Findings found;
+  EYEBOX_ASSIGN_OR_RETURN(const std::string series, ChooseSeries(recording, std::nullopt));
+  EYEBOX_ASSIGN_OR_RETURN(found.calibration, CalibrateCamera(recording, watcher.Part(0, 0.4)));
+  EYEBOX_ASSIGN_OR_RETURN(
+      found.levels, ReduceGreyLevels(recording, series, found.calibration, watcher.Part(0.4, 0.8)));
+  EYEBOX_RETURN_IF_ERROR(watcher.Reach(0.8, "uniformity map"));
+  EYEBOX_ASSIGN_OR_RETURN(found.map,
+                          optics::MeasureUniformity(found.levels.reference.reduced.luminance));
+  EYEBOX_RETURN_IF_ERROR(watcher.Reach(0.85, "activation"));
+  EYEBOX_ASSIGN_OR_RETURN(found.activation, fit::ChooseActivation(found.levels.series));
+  EYEBOX_ASSIGN_OR_RETURN(found.field, fit::FitCommonExponent(found.levels.Field()));
+  EYEBOX_RETURN_IF_ERROR(watcher.Reach(0.9, "lookup tables and certificates"));
+  const fit::Activation& activation = found.activation.best.activation;
+  for (const auto& [target, size] : {std::pair(fit::TableTarget::kHdrp, options.hdrp_cube_size),
+                                     std::pair(fit::TableTarget::kPps, options.pps_strip_size)}) {
+    EYEBOX_ASSIGN_OR_RETURN(fit::TableDesign table, fit::DesignTable(activation, target, size));
+    found.tables.push_back(std::move(table));
+  }
+  return found;
+}
+
+constexpr const char* kTableFiles[] = {"linearize.cube", "linearize.png"};  // as in tables
+
+absl::Status DescribeSteps(const Findings& found, const capture::RecordingHeader& header,
+                           const std::filesystem::path& out, v1::RunResult& result) {
+  const GreyLevel& reference = found.levels.reference;
+  EYEBOX_ASSIGN_OR_RETURN(*result.mutable_uniformity(),
+                          DescribeUniformity(found.map, reference.reduced.luminance,
+                                             reference.drive, header.geometry, out));
+  *result.mutable_activation() = DescribeActivation(found.activation, found.levels.series);
+  EYEBOX_ASSIGN_OR_RETURN(*result.mutable_activation()->mutable_field(),
+                          DescribeField(found.field, found.levels, out));
+  EYEBOX_ASSIGN_OR_RETURN(
+      *result.mutable_reduction(),
+      DescribeReduction(reference.reduced, found.calibration, "reference level", out));
+  for (size_t i = 0; i < found.tables.size(); ++i) {
+    EYEBOX_ASSIGN_OR_RETURN(const std::string bytes, fit::EncodeTable(found.tables[i]));
+    EYEBOX_RETURN_IF_ERROR(WriteFileAtomically(out / kTableFiles[i], bytes));
+    *result.add_cubes() = DescribeCube(found.tables[i], result.activation(), kTableFiles[i], bytes);
+  }
+  return absl::OkStatus();
+}
+
+// The scale's uncertainty is part of a luminance that someone quotes.
+void AddSummary(v1::RunResult& result) {
+  const v1::ActivationResult& activation = result.activation();
+  for (v1::Parameter parameter : activation.parameters()) {
+    if (parameter.name() == "minimum_luminance") {
+      const double scale = parameter.value() * activation.scale_relative_sigma();
+      parameter.set_sigma(std::hypot(parameter.sigma(), scale));
+      *result.add_parameters() = std::move(parameter);
+    } else if (parameter.name() == "gamma") {
+      *result.add_parameters() = std::move(parameter);
+    }
+  }
+  *result.add_parameters() = MaximumLuminance(activation, true);
+}
+
+void AddWarnings(const MeasuredLevels& levels, v1::RunResult& result) {
+  const auto add = [&result](const auto& warnings) {
+    for (const std::string& warning : warnings) {
+      const auto& known = result.warnings();
+      if (std::find(known.begin(), known.end(), warning) == known.end()) {
+        result.add_warnings(warning);
+      }
+    }
+  };
+  add(levels.warnings);
+  add(result.reduction().warnings());
+  add(result.uniformity().warnings());
+  add(result.activation().warnings());
+  for (const v1::CubeResult& cube : result.cubes()) add(cube.warnings());
+}
+
+void ListFiles(v1::RunResult& result) {
+  std::vector<std::string> files = {"uniformity.json", "activation.json", "result.json",
+                                    "report.html"};
+  files.insert(files.end(), std::begin(kTableFiles), std::end(kTableFiles));
+  for (const auto* maps : {&result.uniformity().maps(), &result.reduction().maps(),
+                           &result.activation().field().maps()}) {
+    for (const v1::MapFile& map : *maps) files.push_back(map.file());
+  }
+  std::sort(files.begin(), files.end());
+  result.mutable_files()->Add(files.begin(), files.end());
+}
+
+absl::Status WriteJson(const std::filesystem::path& file,
+                       const google::protobuf::Message& message) {
+  EYEBOX_ASSIGN_OR_RETURN(const std::string json, ToJson(message));
+  return WriteFileAtomically(file, json);
+}
+
+absl::Status WriteReport(const std::filesystem::path& file, const Findings& found,
+                         const capture::RecordingHeader& header, const v1::RunResult& result) {
+  const Image<float> smooth_g = found.map.smooth.Values();
+  EYEBOX_ASSIGN_OR_RETURN(
+      const std::string html,
+      report::RenderReport(MakeReportInput(
+          {header, result, found.map, smooth_g, found.activation.best.activation, found.tables})));
+  return WriteFileAtomically(file, html);
+}
+
+// result.json comes last: where it stands, everything that it names is there.
+absl::StatusOr<v1::RunResult> Write(const Findings& found, const capture::RecordingHeader& header,
+                                    const std::filesystem::path& out) {
+  v1::RunResult result;
+  std::error_code absent;
+  std::filesystem::remove(out / "result.json", absent);
+  EYEBOX_RETURN_IF_ERROR(DescribeSteps(found, header, out, result));
+  AddSummary(result);
+  AddWarnings(found.levels, result);
+  ListFiles(result);
+  EYEBOX_RETURN_IF_ERROR(WriteJson(out / "uniformity.json", result.uniformity()));
+  EYEBOX_RETURN_IF_ERROR(WriteJson(out / "activation.json", result.activation()));
+  EYEBOX_RETURN_IF_ERROR(WriteReport(out / "report.html", found, header, result));
+  EYEBOX_RETURN_IF_ERROR(WriteJson(out / "result.json", result));
+  return result;
+}
+
+absl::Status ValidateOptions(const RunOptions& options) {
+  if (options.hdrp_cube_size < 2 || options.hdrp_cube_size > 129) {
+    return BadInput("hdrp_cube_size", absl::StrCat("is ", options.hdrp_cube_size),
+                    "give 2 to 129 entries, as the Unity project's grading LUT size says");
+  }
+  if (options.pps_strip_size < 2 || options.pps_strip_size > 32) {
+    return BadInput("pps_strip_size", absl::StrCat("is ", options.pps_strip_size),
+                    "give 2 to 32 entries");
+  }
+  return absl::OkStatus();
+}
+
+constexpr double kCaptureShare = 0.5;  // of the time of a run that captures first
+
+// The captures as they stand on disk, whatever was planned.
+CapturePlan PlanOf(const capture::RecordingReader& recording) {
+  CapturePlan plan;
+  for (const capture::CaptureEntry& entry : recording.Captures()) {
+    plan.captures.push_back(entry.spec);
+    plan.captures.back().repeats = entry.frame_count;
+  }
+  return plan;
+}
+
+}  // namespace
+
+absl::StatusOr<v1::RunResult> RunRecording(const std::filesystem::path& recording,
+                                           const std::filesystem::path& out,
+                                           const RunOptions& options, const Watcher& watcher) {
+  EYEBOX_RETURN_IF_ERROR(ValidateOptions(options));
+  EYEBOX_ASSIGN_OR_RETURN(const auto reader, capture::RecordingReader::Open(recording));
+  auto found = Measure(*reader, options, watcher);
+  if (!found.ok()) return Within(recording, found.status());
+  EYEBOX_RETURN_IF_ERROR(watcher.Reach(0.95, "writing results"));
+  EYEBOX_ASSIGN_OR_RETURN(v1::RunResult result, Write(*found, reader->Header(), out));
+  if (watcher.progress) watcher.progress({1, "done"});
+  return result;
+}
+
+absl::StatusOr<v1::RunResult> RunRig(const capture::RigConfig& config,
+                                     const std::filesystem::path& recording,
+                                     const std::filesystem::path& out, const RunOptions& options,
+                                     const Watcher& watcher) {
+  EYEBOX_RETURN_IF_ERROR(ValidateOptions(options));
+  EYEBOX_ASSIGN_OR_RETURN(capture::Rig rig, capture::OpenRig(config, SystemClock()));
+  EYEBOX_ASSIGN_OR_RETURN(const CapturePlan plan, capture::MakeGreyPlan({}));
+  EYEBOX_RETURN_IF_ERROR(RecordPlan(rig, plan, recording, watcher.Part(0, kCaptureShare)).status());
+  if (rig.origin == capture::RecordingOrigin::kSimulated) {
+    EYEBOX_RETURN_IF_ERROR(capture::WriteSimTruth(recording, config));
+  }
+  return RunRecording(recording, out, options, watcher.Part(kCaptureShare, 1));
+}
+
+absl::StatusOr<v1::RunResult> ReplayRecording(const std::filesystem::path& recording,
+                                              const std::filesystem::path& replayed,
+                                              const std::filesystem::path& out,
+                                              const RunOptions& options, const Watcher& watcher) {
+  EYEBOX_RETURN_IF_ERROR(ValidateOptions(options));
+  EYEBOX_ASSIGN_OR_RETURN(const auto original, capture::RecordingReader::Open(recording));
+  capture::RigConfig config = original->Header().rig;
+  config.camera_uri = "replay:" + recording.string();
+  EYEBOX_ASSIGN_OR_RETURN(capture::Rig rig, capture::OpenRig(config, SystemClock()));
+  EYEBOX_RETURN_IF_ERROR(
+      RecordPlan(rig, PlanOf(*original), replayed, watcher.Part(0, kCaptureShare)).status());
+  return RunRecording(replayed, out, options, watcher.Part(kCaptureShare, 1));
+}
+
+}  // namespace eyebox::service

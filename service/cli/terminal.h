@@ -13,7 +13,7 @@
 
 namespace eyebox::service::cli {
 
-// The message as proto-JSON on stdout, if `json`.
+// The message as proto-JSON on stdout.
 absl::Status PrintJson(const google::protobuf::Message& message);
 
 // "gamma  2.301 +- 0.004", one line each.

@@ -1,0 +1,64 @@
+#include <cstdio>
+#include <string>
+
+#include "capture/base/status.h"
+#include "service/cli/command.h"
+#include "service/cli/rig_source.h"
+#include "service/cli/terminal.h"
+#include "service/simulate.h"
+
+namespace eyebox::service::cli {
+namespace {
+
+struct Options {
+  std::string rig;
+  std::string out;
+  SimulateRequest request;
+  bool json = false;
+};
+
+absl::Status Run(const Options& options) {
+  SimulateRequest request = options.request;
+  EYEBOX_ASSIGN_OR_RETURN(request.rig, RigOf(options.rig));
+  request.recording = options.out;
+  EYEBOX_ASSIGN_OR_RETURN(const v1::SimulateResult result, Simulate(request, TerminalWatcher()));
+  if (options.json) return PrintJson(result);
+  PrintParameters(result.parameters());
+  std::printf("Wrote %s, with the truth in %s\n", result.recording().c_str(),
+              result.truth().c_str());
+  return absl::OkStatus();
+}
+
+void BindPlan(CLI::App& command, capture::PlanOptions& plan) {
+  command.add_option("--levels", plan.levels, "Grey levels, 0 and 1 included")
+      ->check(CLI::Range(2, 4096))
+      ->capture_default_str();
+  command.add_option("--exposures", plan.exposures_s, "Exposure times in s, ascending, by comma")
+      ->delimiter(',')
+      ->capture_default_str();
+  command.add_option("--repeats", plan.repeats, "Frames per level and exposure")
+      ->capture_default_str();
+  command.add_option("--dark-repeats", plan.dark_repeats, "Dark frames per exposure")
+      ->capture_default_str();
+  command.add_option("--flat-repeats", plan.flat_repeats, "Flat frames per exposure; 0: no flats")
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void AddSimulate(CLI::App& app, Work& work) {
+  AddCommand<Options>(
+      app, work, "simulate", "Record a simulated headset, with the truth beside the frames.",
+      "eyebox simulate sim:rift-s-like --out recording --seed 7 --levels 17",
+      [](CLI::App& command, Options& options) {
+        command.add_option("rig", options.rig, "sim:NAME, or a rig file (.textproto)")->required();
+        command.add_option("--out", options.out, "The recording; must not exist")->required();
+        command.add_option("--seed", options.request.seed,
+                           "Of everything random (default: the rig's, else 1)");
+        BindPlan(command, options.request.plan);
+        command.add_flag("--json", options.json, "Print the result as JSON on stdout");
+      },
+      Run);
+}
+
+}  // namespace eyebox::service::cli

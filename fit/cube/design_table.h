@@ -17,6 +17,8 @@ enum class TableTarget {
   kPps,      // Unity Post-Processing Stack: strip PNG, n x n^2, 8 bits, uniform knots in [0, 1]
   kResolve,  // Adobe / Resolve .cube: uniform knots in [0, 1], entries are drive values
 };
+// HDRP encodes an entry with the inverse sRGB transfer before it drives the display; through kPps
+// and kResolve the entry is the drive value, so u = r gives drive 1 whatever the display's gamma.
 std::string_view NameOf(TableTarget target);  // "hdrp", "pps", "resolve"
 // Errors: InvalidArgument listing the names.
 absl::StatusOr<TableTarget> TableTargetOf(std::string_view name);
@@ -38,7 +40,10 @@ struct Certificate {
   double at_u = 0;    // of the worst, as a fraction of white
   double u_from = 0;  // fractions of white
   double u_to = 1;
-  int samples = 0;
+  int samples = 0;  // evenly in log u
+  // Largest relative luminance step between neighbouring 8-bit drive values in the range, which
+  // the framebuffer imposes and no table removes. Not part of max_relative.
+  double contrast_step_8bit = 0;
 };
 
 struct ErrorPoint {

@@ -1,5 +1,7 @@
 // Tables on disk: .cube (Adobe "Cube LUT Specification" 1.0) and the strip PNG of Unity's
-// Post-Processing Stack (n rows, n^2 columns: R'(i, j) = R(i, j mod n, floor(j / n))).
+// Post-Processing Stack: n rows, n^2 columns, the n slices of the cube side by side (Murray et al.
+// 2022, eq 1, 2). Column j belongs to red j mod n and blue floor(j / n); green counts the rows
+// from the bottom, where Unity puts the origin of a texture.
 #ifndef EYEBOX_FIT_CUBE_TABLE_FILE_H_
 #define EYEBOX_FIT_CUBE_TABLE_FILE_H_
 
@@ -24,13 +26,15 @@ struct Cube3d {
 // The three-dimensional table in which each channel goes through `table` by itself.
 Cube3d ToCube(const TableDesign& table, const std::string& title);
 
-// Text of a .cube file; numbers in the shortest decimal form that reads back to the same float32.
+// Text of a .cube file; quotes and line ends in the title become blanks, numbers in the shortest
+// decimal form that reads back to the same float32.
 std::string EncodeCube(const Cube3d& cube);
 // Strict: unknown keywords, missing or surplus entries and numbers out of range are refused.
 // Errors: NotFound, InvalidArgument naming file and line.
 absl::StatusOr<Cube3d> ReadCube(const std::filesystem::path& file);
 
-// Bytes of the strip PNG. Errors: InvalidArgument (size above 32, target not kPps).
+// Bytes of the strip PNG. Errors: InvalidArgument (size outside 2 to 32, target not kPps, entries
+// outside [0, 1]).
 absl::StatusOr<std::string> EncodeStrip(const TableDesign& table);
 // Entries in [0, 1]. Errors: NotFound, InvalidArgument (not n x n^2), DataLoss; each names the
 // file.

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
@@ -25,13 +26,30 @@ struct CameraInfo {
   double exposure_max_s = 0;
   double gain_min_db = 0;
   double gain_max_db = 0;
-  std::optional<PinholeGeometry> geometry;  // where the optics are known
+  std::optional<PinholeGeometry> geometry = {};  // where the optics are known
+  // PFNC name on the wire, "Mono12p" or "BayerRG8"; counts arrive unpacked, a mosaic stays one.
+  std::string pixel_format = {};  // empty where there is no wire
+  double black_level_min = 0;     // in the device's own unit; both 0: it has no such setting
+  double black_level_max = 0;
+  bool software_trigger = true;
+  std::vector<std::string> trigger_lines = {};  // "Line0", ...; empty: no hardware trigger
+  bool free_run = false;
+};
+
+enum class TriggerSource {
+  kSoftware,  // Trigger() starts each exposure
+  kLine,      // a rising edge on `trigger_line` does; Trigger() is refused
+  kFreeRun,   // the camera itself, one exposure after another
 };
 
 // The complete state that a capture depends on; everything automatic is off by definition.
 struct CameraSettings {
   double exposure_s = 0.01;
   double gain_db = 0;
+  TriggerSource trigger = TriggerSource::kSoftware;
+  std::string trigger_line = {};           // with kLine: one of CameraInfo::trigger_lines
+  double frame_rate_hz = 0;                // with kFreeRun; 0: as fast as the exposure allows
+  std::optional<double> black_level = {};  // the device's unit; empty: as it was when opened
   friend bool operator==(const CameraSettings&, const CameraSettings&) = default;
 };
 
@@ -50,10 +68,12 @@ class Camera {
   // Ready for triggers. Errors: FailedPrecondition (running or never configured), Unavailable.
   virtual absl::Status Start() = 0;
 
-  // Starts one exposure. Errors: FailedPrecondition (not started), Unavailable.
+  // Starts one exposure. Errors: FailedPrecondition (not started, not triggered by software),
+  // Unavailable.
   virtual absl::Status Trigger() = 0;
 
-  // The next frame in order of exposure, complete or not: look at metadata.status.
+  // The next frame in order of exposure, complete or not: look at metadata.status. An incomplete
+  // one may come without pixels.
   // Errors: DeadlineExceeded (nothing came), FailedPrecondition (not started), Unavailable (lost).
   virtual absl::StatusOr<Frame> NextFrame(std::chrono::milliseconds timeout) = 0;
 

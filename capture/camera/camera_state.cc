@@ -1,5 +1,7 @@
 #include "capture/camera/camera_state.h"
 
+#include <algorithm>
+
 #include "capture/base/status.h"
 
 namespace eyebox::capture {
@@ -12,12 +14,39 @@ absl::Status CheckLimits(const std::string& where, double value, double minimum,
       "this camera takes " + std::to_string(minimum) + " to " + std::to_string(maximum));
 }
 
+absl::Status CheckTrigger(const CameraInfo& info, const CameraSettings& settings) {
+  const std::string where = info.uri + " trigger";
+  switch (settings.trigger) {
+    case TriggerSource::kSoftware:
+      if (info.software_trigger) return absl::OkStatus();
+      return BadInput(where, "cannot come from software", "wire a trigger line or let it run free");
+    case TriggerSource::kFreeRun:
+      if (!info.free_run) return BadInput(where, "is needed for every frame", "do not run it free");
+      if (settings.frame_rate_hz >= 0) return absl::OkStatus();
+      return BadInput(info.uri + " frame_rate_hz", "is " + std::to_string(settings.frame_rate_hz),
+                      "give 0 or a positive rate");
+    case TriggerSource::kLine:
+      break;
+  }
+  if (std::ranges::count(info.trigger_lines, settings.trigger_line) > 0) return absl::OkStatus();
+  std::string lines;
+  for (const std::string& line : info.trigger_lines) lines.append(" ").append(line);
+  return BadInput(where + "_line", "is '" + settings.trigger_line + "'",
+                  lines.empty() ? "this camera has no trigger line" : "name one of" + lines);
+}
+
 }  // namespace
 
 absl::Status CheckSettings(const CameraInfo& info, const CameraSettings& settings) {
   EYEBOX_RETURN_IF_ERROR(CheckLimits(info.uri + " exposure_s", settings.exposure_s,
                                      info.exposure_min_s, info.exposure_max_s));
-  return CheckLimits(info.uri + " gain_db", settings.gain_db, info.gain_min_db, info.gain_max_db);
+  EYEBOX_RETURN_IF_ERROR(
+      CheckLimits(info.uri + " gain_db", settings.gain_db, info.gain_min_db, info.gain_max_db));
+  if (settings.black_level) {
+    EYEBOX_RETURN_IF_ERROR(CheckLimits(info.uri + " black_level", *settings.black_level,
+                                       info.black_level_min, info.black_level_max));
+  }
+  return CheckTrigger(info, settings);
 }
 
 absl::Status CameraState::Configure(const CameraInfo& info, const CameraSettings& settings) {

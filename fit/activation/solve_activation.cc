@@ -7,12 +7,37 @@
 #include "absl/strings/str_join.h"
 #include "capture/base/status.h"
 #include "ceres/problem.h"
+#include "ceres/sized_cost_function.h"
 #include "ceres/solver.h"
 #include "fit/activation/activation_problem.h"
-#include "fit/activation/level_residual.h"
 
 namespace eyebox::fit {
 namespace {
+
+// Residual root_weight (L(v; L0, L1, v0, gamma) - reading), [1]; parameter blocks L0, L1, v0 and
+// gamma, [1] each, so that any of them can be held.
+struct LevelResidual final : ceres::SizedCostFunction<1, 1, 1, 1, 1> {
+  explicit LevelResidual(const WeightedReading& weighted_reading) : reading(weighted_reading) {}
+
+  // The caller owns it, as ceres::Problem expects.
+  static ceres::CostFunction* Create(const WeightedReading& reading) {
+    return new LevelResidual(reading);
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    const Activation activation{*parameters[0], *parameters[1], *parameters[2], *parameters[3]};
+    residuals[0] = reading.root_weight * (activation.Luminance(reading.drive) - reading.luminance);
+    if (jacobians == nullptr) return true;
+    const std::array<double, 4> gradient = activation.LuminanceGradient(reading.drive);
+    for (int i = 0; i < 4; ++i) {
+      if (jacobians[i] != nullptr) jacobians[i][0] = reading.root_weight * gradient[i];
+    }
+    return true;
+  }
+
+  const WeightedReading reading;
+};
 
 enum Block { kMinimum, kRange, kCutoff, kGamma };
 constexpr const char* kBlockNames[] = {"minimum_luminance", "luminance_range", "cutoff_drive",

@@ -34,6 +34,7 @@ struct FrameMetadata {
   std::optional<double> gain_reported_db;
   std::optional<double> black_level_dn;
   std::optional<double> temperature_degC;
+  std::optional<double> photodiode_counts;  // of the reference photodiode, during the exposure
 };
 
 // Pixels and metadata travel as one. Copying a Frame shares the pixels; the buffer goes back to

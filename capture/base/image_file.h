@@ -25,7 +25,8 @@ absl::StatusOr<StillImage> ReadGreyImage(const std::filesystem::path& file);
 
 using Rgb8 = std::array<uint8_t, 3>;
 
-// Writes an 8-bit RGB PNG, through a temporary file and a rename. Errors: the errno of the file system.
+// Writes an 8-bit RGB PNG, through a temporary file and a rename. Errors: the errno of the file
+// system.
 absl::Status WritePng(const std::filesystem::path& file, const Image<Rgb8>& image);
 // The same bytes in memory. Errors: Internal (the encoder refused).
 absl::StatusOr<std::string> EncodePng(const Image<Rgb8>& image);

@@ -1,0 +1,65 @@
+// The HDF5 side of a capture file: the only place that calls libhdf5. It is closed again when a
+// function returns, and one call runs at a time in the process (libhdf5 is not thread-safe).
+#ifndef EYEBOX_CAPTURE_RECORDING_CAPTURE_FILE_H_
+#define EYEBOX_CAPTURE_RECORDING_CAPTURE_FILE_H_
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "capture/base/image.h"
+
+namespace eyebox::capture {
+
+struct CaptureFileShape {
+  ImageSize frame_size;
+  int frame_count = 0;
+};
+
+// Scalar strings, written as /meta/NAME.
+using MetaStrings = std::vector<std::pair<std::string, std::string>>;
+
+struct CaptureFileLayout {
+  uint64_t file_bytes = 0;
+  uint64_t frames_offset_bytes = 0;  // 0 in a packed file
+  uint64_t records_offset_bytes = 0;
+};
+
+// /frames uint16 [N, height, width] and /frame_records [N], contiguous, allocated, not filled: the
+// caller writes both at their offsets. Errors: Internal (libhdf5 refused, with its reason).
+absl::StatusOr<CaptureFileLayout> CreateCaptureFile(const std::filesystem::path& file,
+                                                    const CaptureFileShape& shape,
+                                                    const MetaStrings& meta);
+
+// Gives frame i, to be valid until the next call.
+using FrameSource = std::function<absl::StatusOr<std::span<const uint16_t>>(int)>;
+
+// The same with /frames in one chunk a frame, shuffled and deflated, and written; the records are
+// still the caller's to write. Errors: also those of `source`.
+absl::StatusOr<CaptureFileLayout> CreatePackedCaptureFile(const std::filesystem::path& file,
+                                                          const CaptureFileShape& shape,
+                                                          const MetaStrings& meta,
+                                                          const FrameSource& source);
+
+// Reads frames of a packed file whose bytes were verified before.
+class PackedFrames {
+ public:
+  virtual ~PackedFrames() = default;
+  // Errors: DataLoss (libhdf5 cannot decode it).
+  virtual absl::Status Read(int frame, std::span<uint16_t> pixels_dn) = 0;
+
+  // Errors: DataLoss (not an HDF5 file, no /frames of this shape).
+  static absl::StatusOr<std::unique_ptr<PackedFrames>> Open(const std::filesystem::path& file,
+                                                            const CaptureFileShape& shape);
+};
+
+}  // namespace eyebox::capture
+
+#endif  // EYEBOX_CAPTURE_RECORDING_CAPTURE_FILE_H_

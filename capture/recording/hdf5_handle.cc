@@ -1,0 +1,28 @@
+#include "capture/recording/hdf5_handle.h"
+
+#include <hdf5.h>
+
+namespace eyebox::capture {
+namespace {
+
+std::mutex& Mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+herr_t KeepInnermost(unsigned, const H5E_error2_t* error, void* text) {
+  if (error->desc) *static_cast<std::string*>(text) = error->desc;
+  return 0;
+}
+
+}  // namespace
+
+Hdf5Lock::Hdf5Lock() : lock_(Mutex()) { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+std::string Hdf5Complaint() {
+  std::string text;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, KeepInnermost, &text);
+  return text.empty() ? "libhdf5 gives no reason" : text;
+}
+
+}  // namespace eyebox::capture

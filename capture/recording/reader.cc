@@ -1,0 +1,132 @@
+#include "capture/recording/reader.h"
+
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "capture/base/file.h"
+#include "capture/base/status.h"
+#include "capture/base/unix_file.h"
+#include "capture/recording/capture_file.h"
+#include "capture/recording/checksum.h"
+#include "capture/recording/frame_record.h"
+#include "capture/recording/header_file.h"
+#include "capture/recording/layout.h"
+#include "capture/recording/manifest.h"
+
+namespace eyebox::capture {
+namespace {
+
+constexpr size_t kLargestHeader = size_t{16} << 20;
+constexpr const char* kRestore = "restore it from a copy or capture it again";
+
+absl::StatusOr<RecordingHeader> ReadHeader(const std::filesystem::path& file,
+                                           const Manifest& manifest) {
+  EYEBOX_ASSIGN_OR_RETURN(const std::string text, ReadWholeFile(file, kLargestHeader));
+  if (text.size() != manifest.header_bytes || Checksum(text) != manifest.header_xxh3) {
+    return Corrupt(file.string(), "is not what was written: it does not match manifest.log",
+                   "restore it from a copy; it must not be edited");
+  }
+  return ParseHeader(text, file);
+}
+
+// Everything but the pixels of an unpacked file, which their records vouch for.
+absl::Status CheckDigest(const UnixFile& file, const ManifestEntry& entry) {
+  EYEBOX_ASSIGN_OR_RETURN(const uint64_t size, file.Size());
+  if (size != entry.file_bytes) {
+    return Corrupt(
+        file.path().string(),
+        "has " + std::to_string(size) + " bytes instead of " + std::to_string(entry.file_bytes),
+        kRestore);
+  }
+  EYEBOX_ASSIGN_OR_RETURN(const uint64_t digest,
+                          ChecksumOutside(file, entry.frames_offset_bytes, entry.FramesBytes()));
+  if (digest == entry.digest_xxh3) return absl::OkStatus();
+  return Corrupt(file.path().string(), "is damaged: it does not match manifest.log", kRestore);
+}
+
+absl::StatusOr<UnixFile> OpenCapture(const std::filesystem::path& file) {
+  absl::StatusOr<UnixFile> opened = UnixFile::OpenToRead(file);
+  if (!absl::IsNotFound(opened.status())) return opened;
+  return Corrupt(file.string(), "is missing, though manifest.log names it", kRestore);
+}
+
+class FileReader final : public RecordingReader {
+ public:
+  FileReader(const std::filesystem::path& recording, RecordingHeader header, Manifest manifest)
+      : header_(std::move(header)), manifest_(std::move(manifest)) {
+    for (const ManifestEntry& entry : manifest_.entries) {
+      captures_.push_back({.number = entry.number,
+                           .spec = entry.spec,
+                           .frame_size = entry.frame_size,
+                           .frame_count = entry.frame_count,
+                           .packed = entry.packed,
+                           .file = CapturePath(recording, entry.number)});
+    }
+  }
+
+  const RecordingHeader& Header() const override { return header_; }
+  std::span<const CaptureEntry> Captures() const override { return captures_; }
+
+  absl::Status VisitFrames(const CaptureEntry& capture, const FrameVisitor& visit) override {
+    const ManifestEntry& entry = manifest_.entries.at(static_cast<size_t>(capture.number) - 1);
+    EYEBOX_ASSIGN_OR_RETURN(const UnixFile file, OpenCapture(capture.file));
+    EYEBOX_RETURN_IF_ERROR(CheckDigest(file, entry));
+    std::unique_ptr<PackedFrames> packed;
+    if (entry.packed) {
+      EYEBOX_ASSIGN_OR_RETURN(
+          packed, PackedFrames::Open(capture.file, {entry.frame_size, entry.frame_count}));
+    }
+    pixels_dn_.resize(entry.frame_size.PixelCount());
+    for (int i = 0; i < entry.frame_count; ++i) {
+      const auto index = static_cast<uint64_t>(i);
+      EYEBOX_RETURN_IF_ERROR(
+          packed ? packed->Read(i, pixels_dn_)
+                 : file.ReadAt(entry.frames_offset_bytes + index * entry.FrameBytes(),
+                               pixels_dn_.data(), entry.FrameBytes()));
+      EYEBOX_RETURN_IF_ERROR(Show(file, entry, static_cast<uint32_t>(i), visit));
+    }
+    return absl::OkStatus();
+  }
+
+ private:
+  absl::Status Show(const UnixFile& file, const ManifestEntry& entry, uint32_t index,
+                    const FrameVisitor& visit) {
+    FrameRecord record;
+    EYEBOX_RETURN_IF_ERROR(
+        file.ReadAt(entry.records_offset_bytes + index * sizeof(record), &record, sizeof(record)));
+    const std::string where = file.path().string() + ", frame " + std::to_string(index);
+    EYEBOX_RETURN_IF_ERROR(CheckRecord(record, index, pixels_dn_, where));
+    return visit({.metadata = MetadataOf(record),
+                  .view = {.pixels_dn = pixels_dn_, .size = entry.frame_size},
+                  .owner = nullptr});
+  }
+
+  const RecordingHeader header_;
+  const Manifest manifest_;
+  std::vector<CaptureEntry> captures_;
+  std::vector<uint16_t> pixels_dn_;  // one frame
+};
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<RecordingReader>> RecordingReader::Open(
+    const std::filesystem::path& recording) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(ManifestPath(recording), ignored)) {
+    if (std::filesystem::exists(HeaderPath(recording), ignored)) {
+      return Corrupt(ManifestPath(recording).string(), "is missing", kRestore);
+    }
+    return Missing(recording.string(), "is not a recording: it holds no manifest.log",
+                   "name the folder of a recording");
+  }
+  EYEBOX_ASSIGN_OR_RETURN(Manifest manifest, ReadManifest(ManifestPath(recording)));
+  EYEBOX_ASSIGN_OR_RETURN(RecordingHeader header, ReadHeader(HeaderPath(recording), manifest));
+  for (const ManifestEntry& entry : manifest.entries) {
+    EYEBOX_ASSIGN_OR_RETURN(const UnixFile file, OpenCapture(CapturePath(recording, entry.number)));
+    if (!entry.packed) EYEBOX_RETURN_IF_ERROR(CheckDigest(file, entry));
+  }
+  return std::make_unique<FileReader>(recording, std::move(header), std::move(manifest));
+}
+
+}  // namespace eyebox::capture

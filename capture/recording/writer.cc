@@ -1,0 +1,249 @@
+#include "capture/recording/writer.h"
+
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include <system_error>
+#include <utility>
+
+#include "capture/base/file.h"
+#include "capture/base/status.h"
+#include "capture/base/unix_file.h"
+#include "capture/base/version.h"
+#include "capture/recording/capture_file.h"
+#include "capture/recording/checksum.h"
+#include "capture/recording/frame_record.h"
+#include "capture/recording/header_file.h"
+#include "capture/recording/layout.h"
+#include "capture/recording/manifest.h"
+
+namespace eyebox::capture {
+namespace {
+
+// What HDF5 takes beside frames and records, and a reserve for manifest and results.
+constexpr double kSpareBytes = 1 << 20;
+
+std::string Megabytes(double bytes) { return std::to_string(bytes / 1e6) + " MB"; }
+
+absl::Status DiskFull(const std::filesystem::path& folder, double needed, double free) {
+  return absl::ResourceExhaustedError(Complaint(
+      folder.string(),
+      "needs " + Megabytes(needed) + " for the next capture, " + Megabytes(free) + " are free",
+      "free space, use another disk or plan fewer frames"));
+}
+
+// In double: a plan may ask for more bytes than 64 bits count.
+absl::Status CheckSpace(const std::filesystem::path& folder, const ManifestEntry& entry) {
+  struct statvfs state {};
+  if (::statvfs(folder.c_str(), &state) != 0) {
+    return SystemFailed(folder.string(), errno, "check the path");
+  }
+  const double free = static_cast<double>(state.f_bavail) * static_cast<double>(state.f_frsize);
+  const double needed = static_cast<double>(entry.FrameBytes() + sizeof(FrameRecord)) *
+                            static_cast<double>(entry.frame_count) +
+                        kSpareBytes;
+  return needed <= free ? absl::OkStatus() : DiskFull(folder, needed, free);
+}
+
+// What captures share: the folder, the manifest, whether either may still be written.
+struct Book {
+  std::filesystem::path recording;
+  CameraInfo camera;
+  ManifestLog manifest;
+  int published = 0;
+  bool capture_open = false;
+  bool failed = false;  // the manifest may end within a record
+};
+
+class FileCapture final : public CaptureWriter {
+ public:
+  FileCapture(std::shared_ptr<Book> book, ManifestEntry entry, UnixFile file)
+      : book_(std::move(book)), entry_(std::move(entry)), file_(std::move(file)) {
+    book_->capture_open = true;
+  }
+  ~FileCapture() override { book_->capture_open = false; }
+
+  absl::Status Append(const Frame& frame) override {
+    EYEBOX_RETURN_IF_ERROR(CheckUsable());
+    EYEBOX_RETURN_IF_ERROR(CheckFrame(frame));
+    const uint64_t index = appended_;
+    const FrameRecord record =
+        MakeFrameRecord(frame, static_cast<uint32_t>(index), entry_.spec.level_id);
+    EYEBOX_RETURN_IF_ERROR(
+        Remember(file_.WriteAt(entry_.frames_offset_bytes + index * entry_.FrameBytes(),
+                               frame.view.pixels_dn.data(), frame.view.pixels_dn.size_bytes())));
+    EYEBOX_RETURN_IF_ERROR(Remember(file_.WriteAt(
+        entry_.records_offset_bytes + index * sizeof(record), &record, sizeof(record))));
+    ++appended_;
+    return absl::OkStatus();
+  }
+
+  absl::Status Acknowledge() override {
+    EYEBOX_RETURN_IF_ERROR(CheckUsable());
+    EYEBOX_RETURN_IF_ERROR(Remember(file_.SyncData()));
+    acknowledged_ = appended_;
+    return absl::OkStatus();
+  }
+
+  absl::Status Publish() override {
+    EYEBOX_RETURN_IF_ERROR(CheckUsable());
+    EYEBOX_RETURN_IF_ERROR(CheckComplete());
+    EYEBOX_ASSIGN_OR_RETURN(entry_.digest_xxh3, ChecksumOutside(file_, entry_.frames_offset_bytes,
+                                                                entry_.FramesBytes()));
+    EYEBOX_RETURN_IF_ERROR(Remember(file_.Sync()));
+    EYEBOX_RETURN_IF_ERROR(
+        Remember(RenameDurably(file_.path(), CapturePath(book_->recording, entry_.number))));
+    closed_ = true;
+    const absl::Status status = book_->manifest.Append(entry_);
+    if (status.ok()) ++book_->published;
+    book_->failed |= !status.ok();
+    return status;
+  }
+
+ private:
+  absl::Status CheckUsable() const {
+    const std::string where = file_.path().string();
+    if (closed_) return Rejected(where, "is published already", "begin another capture");
+    if (failed_) return Rejected(where, "failed before", "begin the capture again");
+    return absl::OkStatus();
+  }
+
+  // After an error of the disk the file is abandoned.
+  absl::Status Remember(absl::Status status) {
+    failed_ |= !status.ok();
+    return status;
+  }
+
+  absl::Status CheckFrame(const Frame& frame) const {
+    const std::string where = file_.path().string() + ", frame " + std::to_string(appended_);
+    if (frame.metadata.status != BufferStatus::kComplete) {
+      return Rejected(where, "is not complete", "capture it again: it is not data");
+    }
+    if (frame.view.size != entry_.frame_size ||
+        frame.view.pixels_dn.size() != entry_.frame_size.PixelCount()) {
+      return BadInput(where,
+                      "is " + std::to_string(frame.view.size.width_px) + " x " +
+                          std::to_string(frame.view.size.height_px) + " px, the capture is of " +
+                          std::to_string(entry_.frame_size.width_px) + " x " +
+                          std::to_string(entry_.frame_size.height_px) + " px",
+                      "keep the frame size within a capture");
+    }
+    if (appended_ >= static_cast<uint64_t>(entry_.frame_count)) {
+      return BadInput(where, "is one more than the capture was announced with",
+                      "announce as many repeats as are taken");
+    }
+    return absl::OkStatus();
+  }
+
+  absl::Status CheckComplete() const {
+    if (acknowledged_ == static_cast<uint64_t>(entry_.frame_count)) return absl::OkStatus();
+    return Rejected(file_.path().string(),
+                    "has " + std::to_string(acknowledged_) + " acknowledged frames of " +
+                        std::to_string(entry_.frame_count),
+                    "append and acknowledge all of them first");
+  }
+
+  const std::shared_ptr<Book> book_;
+  ManifestEntry entry_;
+  UnixFile file_;
+  uint64_t appended_ = 0;
+  uint64_t acknowledged_ = 0;
+  bool closed_ = false;
+  bool failed_ = false;
+};
+
+MetaStrings MetaOf(const CameraInfo& camera, const CaptureSpec& spec) {
+  return {{"format", "eyebox capture " + std::to_string(kFormatVersion)},
+          {"software_version", std::string(kVersion)},
+          {"camera", CameraText(camera)},
+          {"capture", CaptureText(spec)}};
+}
+
+class FileRecording final : public RecordingWriter {
+ public:
+  explicit FileRecording(Book book) : book_(std::make_shared<Book>(std::move(book))) {}
+
+  absl::StatusOr<std::unique_ptr<CaptureWriter>> BeginCapture(const CaptureSpec& spec,
+                                                              ImageSize frame_size) override {
+    EYEBOX_RETURN_IF_ERROR(CheckUsable());
+    ManifestEntry entry;
+    entry.number = book_->published + 1;
+    entry.spec = spec;
+    entry.frame_size = frame_size;
+    entry.frame_count = spec.repeats;
+    const std::filesystem::path partial = PartialPath(book_->recording, entry.number);
+    EYEBOX_RETURN_IF_ERROR(CheckShape(partial, entry));
+    // A capture that is taken again begins anew, and its space counts as free.
+    std::error_code ignored;
+    std::filesystem::remove(partial, ignored);
+    EYEBOX_RETURN_IF_ERROR(CheckSpace(CapturesFolder(book_->recording), entry));
+    absl::StatusOr<UnixFile> file = Prepare(partial, entry);
+    if (!file.ok()) {
+      ::unlink(partial.c_str());
+      return std::move(file).status();
+    }
+    return std::make_unique<FileCapture>(book_, std::move(entry), *std::move(file));
+  }
+
+ private:
+  absl::Status CheckUsable() const {
+    const std::string where = book_->recording.string();
+    if (book_->capture_open) {
+      return Rejected(where, "has a capture open", "publish or drop it first");
+    }
+    if (book_->failed) {
+      return Rejected(where, "could not write its manifest before", "begin another recording");
+    }
+    return absl::OkStatus();
+  }
+
+  static absl::Status CheckShape(const std::filesystem::path& partial, const ManifestEntry& entry) {
+    if (entry.frame_count < 1) {
+      return BadInput(partial.string(),
+                      "is to hold " + std::to_string(entry.frame_count) + " frames",
+                      "ask for one or more");
+    }
+    if (entry.frame_size.width_px > 0 && entry.frame_size.height_px > 0) return absl::OkStatus();
+    return BadInput(partial.string(), "is to hold frames without pixels", "give the frame size");
+  }
+
+  // libhdf5 has closed the file when its space is reserved.
+  absl::StatusOr<UnixFile> Prepare(const std::filesystem::path& partial, ManifestEntry& entry) {
+    EYEBOX_ASSIGN_OR_RETURN(const CaptureFileLayout layout,
+                            CreateCaptureFile(partial, {entry.frame_size, entry.frame_count},
+                                              MetaOf(book_->camera, entry.spec)));
+    entry.file_bytes = layout.file_bytes;
+    entry.frames_offset_bytes = layout.frames_offset_bytes;
+    entry.records_offset_bytes = layout.records_offset_bytes;
+    EYEBOX_ASSIGN_OR_RETURN(UnixFile file, UnixFile::OpenToWrite(partial));
+    EYEBOX_RETURN_IF_ERROR(file.Reserve(layout.file_bytes));
+    EYEBOX_RETURN_IF_ERROR(file.Sync());
+    return file;
+  }
+
+  const std::shared_ptr<Book> book_;
+};
+
+absl::Status CheckVacant(const std::filesystem::path& recording) {
+  std::error_code error;
+  if (!std::filesystem::exists(recording, error)) return absl::OkStatus();
+  if (std::filesystem::is_empty(recording, error) && !error) return absl::OkStatus();
+  return absl::AlreadyExistsError(Complaint(recording.string(), "exists and is not empty",
+                                            "name a folder that does not exist yet"));
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<RecordingWriter>> RecordingWriter::Create(
+    const std::filesystem::path& recording, const RecordingHeader& header, const Clock*) {
+  EYEBOX_ASSIGN_OR_RETURN(const std::string text, HeaderText(header));
+  EYEBOX_RETURN_IF_ERROR(CheckVacant(recording));
+  EYEBOX_RETURN_IF_ERROR(CreateFolders(CapturesFolder(recording)));
+  EYEBOX_RETURN_IF_ERROR(WriteFileAtomically(HeaderPath(recording), text));
+  EYEBOX_ASSIGN_OR_RETURN(ManifestLog manifest, ManifestLog::Create(ManifestPath(recording), text));
+  EYEBOX_RETURN_IF_ERROR(SyncFolder(recording.parent_path()));
+  return std::make_unique<FileRecording>(
+      Book{.recording = recording, .camera = header.camera, .manifest = std::move(manifest)});
+}
+
+}  // namespace eyebox::capture

@@ -1,0 +1,20 @@
+// What every handler may use.
+#ifndef EYEBOX_SERVICE_SERVER_HANDLERS_CONTEXT_H_
+#define EYEBOX_SERVICE_SERVER_HANDLERS_CONTEXT_H_
+
+#include "service/server/jobs/executor.h"
+#include "service/server/jobs/jobs.h"
+#include "service/server/store/beneath.h"
+
+namespace eyebox::service {
+
+// Outlives every call.
+struct HandlerContext {
+  Jobs& jobs;
+  Executor& disk;                // for what waits for the disk: never in a reactor
+  const RootFolder& recordings;  // the folder that is served
+};
+
+}  // namespace eyebox::service
+
+#endif  // EYEBOX_SERVICE_SERVER_HANDLERS_CONTEXT_H_

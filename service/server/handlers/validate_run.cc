@@ -1,0 +1,56 @@
+#include "service/server/handlers/validate_run.h"
+
+#include <string>
+
+#include "capture/base/status.h"
+#include "service/server/store/names.h"
+
+namespace eyebox::service {
+namespace {
+
+struct SizeRule {
+  std::string_view field;
+  int32_t (v1::CreateRunRequest::*value)() const;
+  int min;
+  int max;
+};
+
+// As RunOptions in service/pipeline.h.
+constexpr SizeRule kSizes[] = {
+    {"hdrp_cube_size", &v1::CreateRunRequest::hdrp_cube_size, 2, 129},
+    {"pps_strip_size", &v1::CreateRunRequest::pps_strip_size, 2, 32},
+};
+
+absl::Status ValidateRig(const v1::Rig& rig) {
+  EYEBOX_RETURN_IF_ERROR(CheckName(kRigRule, "rig.name", rig.name()).status());
+  return CheckName(kCameraRule, "rig.camera_uri", rig.camera_uri()).status();
+}
+
+absl::Status ValidateSource(const v1::CreateRunRequest& request) {
+  switch (request.source_case()) {
+    case v1::CreateRunRequest::kRecording:
+      return CheckName(kRecordingRule, "recording", request.recording()).status();
+    case v1::CreateRunRequest::kRig:
+      return ValidateRig(request.rig());
+    case v1::CreateRunRequest::SOURCE_NOT_SET:
+      break;
+  }
+  return BadField("source", "is missing", "give a recording or a rig");
+}
+
+}  // namespace
+
+absl::Status ValidateRun(const v1::CreateRunRequest& request) {
+  EYEBOX_RETURN_IF_ERROR(CheckName(kRequestIdRule, "request_id", request.request_id()).status());
+  EYEBOX_RETURN_IF_ERROR(ValidateSource(request));
+  for (const SizeRule& rule : kSizes) {
+    const int value = (request.*rule.value)();
+    if (value == 0 || (value >= rule.min && value <= rule.max)) continue;
+    return BadField(rule.field, "is " + std::to_string(value),
+                    "give " + std::to_string(rule.min) + " to " + std::to_string(rule.max) +
+                        ", or 0 for the default");
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace eyebox::service

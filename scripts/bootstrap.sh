@@ -11,7 +11,8 @@ set -euo pipefail
 
 build_packages=(
   g++ cmake ninja-build pkg-config
-  libabsl-dev libceres-dev libcli11-dev libeigen3-dev libfmt-dev libgrpc++-dev libhdf5-dev
+  libabsl-dev libceres-dev libcli11-dev libeigen3-dev libfmt-dev libgpiod-dev
+  libgrpc++-dev libhdf5-dev libiio-dev
   libopencv-dev # its CMake package demands every module; the four that are used are not enough
   libprotobuf-dev libspdlog-dev libssl-dev libtiff-dev libxxhash-dev
   protobuf-compiler protobuf-compiler-grpc

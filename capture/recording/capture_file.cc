@@ -96,23 +96,26 @@ class FileBuilder {
     return Offset(frames, layout_.frames_offset_bytes);
   }
 
-  absl::Status AddPackedFrames(const FrameSource& source) {
-    EYEBOX_ASSIGN_OR_RETURN(const Hdf5Handle frames,
+  absl::Status AddPackedFrames() {
+    EYEBOX_ASSIGN_OR_RETURN(Hdf5Handle frames,
                             Dataset("/frames", H5T_STD_U16LE, FramesDimensions(shape_), Chunked()));
-    const Hdf5Handle there(H5Dget_space(frames.id()), H5Sclose);
+    packed_frames_.emplace(std::move(frames));
+    return absl::OkStatus();
+  }
+
+  absl::Status AppendPacked(std::span<const uint16_t> pixels_dn) {
+    const Hdf5Handle there(H5Dget_space(packed_frames_->id()), H5Sclose);
     Dimensions count = FramesDimensions(shape_);
     count[0] = 1;
     const Hdf5Handle here(H5Screate_simple(3, count.data(), nullptr), H5Sclose);
-    for (int i = 0; i < shape_.frame_count; ++i) {
-      EYEBOX_ASSIGN_OR_RETURN(const std::span<const uint16_t> pixels_dn, source(i));
-      const Dimensions start = {static_cast<hsize_t>(i), 0, 0};
-      EYEBOX_HDF5(H5Sselect_hyperslab(there.id(), H5S_SELECT_SET, start.data(), nullptr,
-                                      count.data(), nullptr),
-                  "cannot select a frame");
-      EYEBOX_HDF5(H5Dwrite(frames.id(), H5T_NATIVE_UINT16, here.id(), there.id(), H5P_DEFAULT,
-                           pixels_dn.data()),
-                  "cannot write a frame");
-    }
+    const Dimensions start = {appended_, 0, 0};
+    EYEBOX_HDF5(H5Sselect_hyperslab(there.id(), H5S_SELECT_SET, start.data(), nullptr, count.data(),
+                                    nullptr),
+                "cannot select a frame");
+    EYEBOX_HDF5(H5Dwrite(packed_frames_->id(), H5T_NATIVE_UINT16, here.id(), there.id(),
+                         H5P_DEFAULT, pixels_dn.data()),
+                "cannot write a frame");
+    ++appended_;
     return absl::OkStatus();
   }
 
@@ -125,6 +128,7 @@ class FileBuilder {
   }
 
   absl::StatusOr<CaptureFileLayout> Finish() {
+    if (packed_frames_ && !packed_frames_->Close()) return Refused(file_, "cannot be closed");
     if (!hdf5_.Close()) return Refused(file_, "cannot be closed");
     std::error_code error;
     layout_.file_bytes = std::filesystem::file_size(file_, error);
@@ -202,10 +206,42 @@ class FileBuilder {
     return absl::OkStatus();
   }
 
-  const std::filesystem::path& file_;
+  const std::filesystem::path file_;
   const CaptureFileShape shape_;
   Hdf5Handle hdf5_;
+  std::optional<Hdf5Handle> packed_frames_;
+  hsize_t appended_ = 0;
   CaptureFileLayout layout_;
+};
+
+class LockedPackedFile final : public PackedFileWriter {
+ public:
+  LockedPackedFile(const std::filesystem::path& file, const CaptureFileShape& shape)
+      : builder_(std::in_place, file, shape) {}
+
+  ~LockedPackedFile() override {
+    const Hdf5Lock lock;
+    builder_.reset();
+  }
+
+  absl::Status Begin(const MetaStrings& meta) {
+    EYEBOX_RETURN_IF_ERROR(builder_->AddRecords());
+    EYEBOX_RETURN_IF_ERROR(builder_->AddMeta(meta));
+    return builder_->AddPackedFrames();
+  }
+
+  absl::Status Append(std::span<const uint16_t> pixels_dn) override {
+    const Hdf5Lock lock;
+    return builder_->AppendPacked(pixels_dn);
+  }
+
+  absl::StatusOr<CaptureFileLayout> Finish() override {
+    const Hdf5Lock lock;
+    return builder_->Finish();
+  }
+
+ private:
+  std::optional<FileBuilder> builder_;
 };
 
 }  // namespace
@@ -221,16 +257,17 @@ absl::StatusOr<CaptureFileLayout> CreateCaptureFile(const std::filesystem::path&
   return builder.Finish();
 }
 
-absl::StatusOr<CaptureFileLayout> CreatePackedCaptureFile(const std::filesystem::path& file,
-                                                          const CaptureFileShape& shape,
-                                                          const MetaStrings& meta,
-                                                          const FrameSource& source) {
-  const Hdf5Lock lock;
-  FileBuilder builder(file, shape);
-  EYEBOX_RETURN_IF_ERROR(builder.AddRecords());
-  EYEBOX_RETURN_IF_ERROR(builder.AddMeta(meta));
-  EYEBOX_RETURN_IF_ERROR(builder.AddPackedFrames(source));
-  return builder.Finish();
+absl::StatusOr<std::unique_ptr<PackedFileWriter>> PackedFileWriter::Create(
+    const std::filesystem::path& file, const CaptureFileShape& shape, const MetaStrings& meta) {
+  std::unique_ptr<LockedPackedFile> writer;
+  absl::Status begun;
+  {
+    const Hdf5Lock lock;
+    writer = std::make_unique<LockedPackedFile>(file, shape);
+    begun = writer->Begin(meta);
+  }
+  if (!begun.ok()) return begun;
+  return writer;
 }
 
 }  // namespace eyebox::capture

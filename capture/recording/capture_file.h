@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -38,15 +37,19 @@ absl::StatusOr<CaptureFileLayout> CreateCaptureFile(const std::filesystem::path&
                                                     const CaptureFileShape& shape,
                                                     const MetaStrings& meta);
 
-// Gives frame i, to be valid until the next call.
-using FrameSource = std::function<absl::StatusOr<std::span<const uint16_t>>(int)>;
+// The same with /frames in one chunk a frame, shuffled and deflated; libhdf5 keeps the file open
+// until Finish(). The records are the caller's to write afterwards.
+class PackedFileWriter {
+ public:
+  virtual ~PackedFileWriter() = default;
+  // Frames in order. Errors: Internal (libhdf5 refused).
+  virtual absl::Status Append(std::span<const uint16_t> pixels_dn) = 0;
+  virtual absl::StatusOr<CaptureFileLayout> Finish() = 0;
 
-// The same with /frames in one chunk a frame, shuffled and deflated, and written; the records are
-// still the caller's to write. Errors: also those of `source`.
-absl::StatusOr<CaptureFileLayout> CreatePackedCaptureFile(const std::filesystem::path& file,
-                                                          const CaptureFileShape& shape,
-                                                          const MetaStrings& meta,
-                                                          const FrameSource& source);
+  static absl::StatusOr<std::unique_ptr<PackedFileWriter>> Create(const std::filesystem::path& file,
+                                                                  const CaptureFileShape& shape,
+                                                                  const MetaStrings& meta);
+};
 
 // Reads frames of a packed file whose bytes were verified before.
 class PackedFrames {

@@ -1,7 +1,9 @@
 #include "capture/recording/header_file.h"
 
 #include "capture/base/status.h"
+#include "capture/base/version.h"
 #include "capture/recording/convert.h"
+#include "capture/recording/layout.h"
 #include "capture/recording/text_format.h"
 
 namespace eyebox::capture {
@@ -19,8 +21,11 @@ absl::StatusOr<RecordingHeader> ParseHeader(const std::string& text,
   return FromProto(proto, file.string());
 }
 
-std::string CaptureText(const CaptureSpec& spec) { return PrintText(ToProto(spec)); }
-
-std::string CameraText(const CameraInfo& camera) { return PrintText(ToProto(camera)); }
+MetaStrings CaptureMeta(const CameraInfo& camera, const CaptureSpec& spec) {
+  return {{"format", "eyebox capture " + std::to_string(kFormatVersion)},
+          {"software_version", std::string(kVersion)},
+          {"camera", PrintText(ToProto(camera))},
+          {"capture", PrintText(ToProto(spec))}};
+}
 
 }  // namespace eyebox::capture

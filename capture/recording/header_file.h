@@ -6,6 +6,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "capture/recording/capture_file.h"
 #include "capture/recording/header.h"
 
 namespace eyebox::capture {
@@ -17,9 +18,8 @@ absl::StatusOr<std::string> HeaderText(const RecordingHeader& header);
 absl::StatusOr<RecordingHeader> ParseHeader(const std::string& text,
                                             const std::filesystem::path& file);
 
-// One message each, as text: what a capture file says of itself under /meta.
-std::string CaptureText(const CaptureSpec& spec);
-std::string CameraText(const CameraInfo& camera);
+// What a capture file says of itself under /meta, so that it is understood alone.
+MetaStrings CaptureMeta(const CameraInfo& camera, const CaptureSpec& spec);
 
 }  // namespace eyebox::capture
 

@@ -9,13 +9,13 @@
 #include "capture/base/file.h"
 #include "capture/base/status.h"
 #include "capture/base/unix_file.h"
-#include "capture/base/version.h"
 #include "capture/recording/capture_file.h"
 #include "capture/recording/checksum.h"
 #include "capture/recording/frame_record.h"
 #include "capture/recording/header_file.h"
 #include "capture/recording/layout.h"
 #include "capture/recording/manifest.h"
+#include "capture/recording/staging.h"
 
 namespace eyebox::capture {
 namespace {
@@ -152,13 +152,6 @@ class FileCapture final : public CaptureWriter {
   bool failed_ = false;
 };
 
-MetaStrings MetaOf(const CameraInfo& camera, const CaptureSpec& spec) {
-  return {{"format", "eyebox capture " + std::to_string(kFormatVersion)},
-          {"software_version", std::string(kVersion)},
-          {"camera", CameraText(camera)},
-          {"capture", CaptureText(spec)}};
-}
-
 class FileRecording final : public RecordingWriter {
  public:
   explicit FileRecording(Book book) : book_(std::make_shared<Book>(std::move(book))) {}
@@ -211,7 +204,7 @@ class FileRecording final : public RecordingWriter {
   absl::StatusOr<UnixFile> Prepare(const std::filesystem::path& partial, ManifestEntry& entry) {
     EYEBOX_ASSIGN_OR_RETURN(const CaptureFileLayout layout,
                             CreateCaptureFile(partial, {entry.frame_size, entry.frame_count},
-                                              MetaOf(book_->camera, entry.spec)));
+                                              CaptureMeta(book_->camera, entry.spec)));
     entry.file_bytes = layout.file_bytes;
     entry.frames_offset_bytes = layout.frames_offset_bytes;
     entry.records_offset_bytes = layout.records_offset_bytes;
@@ -223,14 +216,6 @@ class FileRecording final : public RecordingWriter {
 
   const std::shared_ptr<Book> book_;
 };
-
-absl::Status CheckVacant(const std::filesystem::path& recording) {
-  std::error_code error;
-  if (!std::filesystem::exists(recording, error)) return absl::OkStatus();
-  if (std::filesystem::is_empty(recording, error) && !error) return absl::OkStatus();
-  return absl::AlreadyExistsError(Complaint(recording.string(), "exists and is not empty",
-                                            "name a folder that does not exist yet"));
-}
 
 }  // namespace
 

@@ -51,8 +51,9 @@ Certificate Certify(const TableDesign& table, const Activation& activation,
   double squares = 0;
   for (const ErrorPoint& point : points) squares += point.relative_error * point.relative_error;
   certificate.rms_relative = std::sqrt(squares / options.samples);
-  for (double knot_u : table.knots_u) {
-    const double x = knot_u / table.white_u;
+  std::vector<double> bends = {CutoffOf(activation)};
+  for (double knot_u : table.knots_u) bends.push_back(knot_u / table.white_u);
+  for (double x : bends) {
     if (x > options.u_from && x < 1) points.push_back({x, ErrorAt(table, activation, x)});
   }
   for (const ErrorPoint& point : points) {

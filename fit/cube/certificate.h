@@ -8,7 +8,7 @@
 namespace eyebox::fit {
 
 // Of `table.entries` as they stand, wherever they come from. Evaluated at `options.samples` values
-// of u, evenly in log u, and for the maximum at the knots too, where the error bends.
+// of u, evenly in log u, and for the maximum also where the error bends: at the knots and u0.
 // `options.white_u` is the table's.
 Certificate Certify(const TableDesign& table, const Activation& activation,
                     const DesignOptions& options);

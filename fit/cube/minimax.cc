@@ -125,6 +125,10 @@ std::vector<DesignPoint> DesignPoints(const Activation& activation, TableTarget 
     const double x = std::pow(x_from, 1 - static_cast<double>(i) / kLogPoints);
     points.push_back(PointAt(activation, size, x, PositionOf(target, size, x * white_u)));
   }
+  // Where what is wanted bends, no row of smooth points is dense enough.
+  if (const double cutoff = CutoffOf(activation); cutoff > x_from) {
+    points.push_back(PointAt(activation, size, cutoff, PositionOf(target, size, cutoff * white_u)));
+  }
   std::ranges::sort(points, {}, &DesignPoint::x);
   return points;
 }

@@ -9,9 +9,10 @@
 
 namespace eyebox::fit {
 
-// Drive values k / 255, monotone, near `entries` [size]: among all combinations of the whole
-// numbers around each, the one whose worst relative error over `points` is smallest, and among
-// those the one with the smallest rms. Dynamic programming over neighbouring entries.
+// Drive values k / 255, monotone, near `entries` [size] in [0, 1]: of all combinations of levels
+// within 16 of each (the one that reaches below the range: of all levels), the one whose worst
+// relative error over `points` is smallest, and among those the one with the smallest rms. Entries
+// outside the range are rounded to the nearest. Dynamic programming over neighbouring entries.
 std::vector<double> RoundTo8Bits(const Activation& activation, const std::vector<double>& entries,
                                  const std::vector<DesignPoint>& points);
 

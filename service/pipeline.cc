@@ -1,7 +1,6 @@
 #include "service/pipeline.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <optional>
 #include <string>
@@ -92,19 +91,13 @@ absl::Status DescribeSteps(const Findings& found, const capture::RecordingHeader
   return absl::OkStatus();
 }
 
-// The scale's uncertainty is part of a luminance that someone quotes.
 void AddSummary(v1::RunResult& result) {
-  const v1::ActivationResult& activation = result.activation();
-  for (v1::Parameter parameter : activation.parameters()) {
-    if (parameter.name() == "minimum_luminance") {
-      const double scale = parameter.value() * activation.scale_relative_sigma();
-      parameter.set_sigma(std::hypot(parameter.sigma(), scale));
-      *result.add_parameters() = std::move(parameter);
-    } else if (parameter.name() == "gamma") {
-      *result.add_parameters() = std::move(parameter);
+  for (const v1::Parameter& parameter : result.activation().parameters()) {
+    if (parameter.name() == "gamma" || parameter.name() == "minimum_luminance") {
+      *result.add_parameters() = parameter;
     }
   }
-  *result.add_parameters() = MaximumLuminance(activation, true);
+  *result.add_parameters() = MaximumLuminance(result.activation());
 }
 
 void AddWarnings(const MeasuredLevels& levels, v1::RunResult& result) {

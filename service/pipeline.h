@@ -1,4 +1,5 @@
-// The whole way from a recording to proven tables; pipeline.cc reads as the paragraph of the method.
+// The whole way from a recording to proven tables; pipeline.cc reads as the paragraph of the
+// method.
 #ifndef EYEBOX_SERVICE_PIPELINE_H_
 #define EYEBOX_SERVICE_PIPELINE_H_
 

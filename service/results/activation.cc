@@ -128,7 +128,7 @@ absl::StatusOr<v1::CommonExponentResult> DescribeField(const fit::CommonExponent
   return result;
 }
 
-v1::Parameter MaximumLuminance(const v1::ActivationResult& activation, bool with_scale) {
+v1::Parameter MaximumLuminance(const v1::ActivationResult& activation) {
   v1::Parameter maximum;
   maximum.set_name("maximum_luminance");
   maximum.set_unit(activation.luminance_unit());
@@ -139,8 +139,7 @@ v1::Parameter MaximumLuminance(const v1::ActivationResult& activation, bool with
     variance = activation.covariance(0) + activation.covariance(kParameters + 1) +
                2 * activation.covariance(1);
   }
-  const double scale = with_scale ? maximum.value() * activation.scale_relative_sigma() : 0;
-  maximum.set_sigma(std::sqrt(std::max(variance, 0.0) + scale * scale));
+  maximum.set_sigma(std::sqrt(std::max(variance, 0.0)));
   return maximum;
 }
 

@@ -23,9 +23,8 @@ absl::StatusOr<v1::CommonExponentResult> DescribeField(const fit::CommonExponent
                                                        const MeasuredLevels& levels,
                                                        const std::filesystem::path& folder);
 
-// L0 + L1, "maximum_luminance". Sigma is that of the fit; with `with_scale` that of the luminance
-// scale too.
-v1::Parameter MaximumLuminance(const v1::ActivationResult& activation, bool with_scale);
+// L0 + L1, "maximum_luminance"; its sigma, like theirs, holds that of the luminance scale.
+v1::Parameter MaximumLuminance(const v1::ActivationResult& activation);
 
 // Errors: InvalidArgument naming `where` and the parameter that is absent or out of range.
 absl::StatusOr<fit::Activation> ActivationOf(const v1::ActivationResult& result,

@@ -34,7 +34,7 @@ v1::CubeResult DescribeCube(const fit::TableDesign& design, const v1::Activation
   v1::CubeResult result;
   auto& parameters = *result.mutable_parameters();
   AddParameter(parameters, "size", design.size, 0, "1");
-  const v1::Parameter white = MaximumLuminance(activation, true);
+  const v1::Parameter white = MaximumLuminance(activation);
   AddParameter(parameters, "luminance_at_white", white.value(), white.sigma(), white.unit());
   AddParameter(parameters, "white_u", design.white_u, 0, "1");
   AddParameter(parameters, "u_cutoff", design.u_cutoff, 0, "1");

@@ -12,6 +12,7 @@ namespace {
 
 // A linear sensor's pairs agree with 1; beyond this the luminance scale depends on the exposure.
 constexpr double kNotedNonlinearity = 0.01;
+constexpr double kNearlyAll = 0.9;  // of the pixels
 
 Image<float> Sigmas(const optics::MeasuredImage& image) {
   Image<float> sigma(image.size());
@@ -64,10 +65,19 @@ void AddExposures(const optics::BracketReport& report, v1::ReduceResult& result)
   }
 }
 
+// A longer exposure that saturates nearly everywhere has nothing to say, and need not.
+bool IsSaturated(const optics::BracketReport& report, double exposure_s) {
+  for (const optics::ExposureShare& share : report.exposures) {
+    if (share.exposure_s == exposure_s) return share.saturated > kNearlyAll;
+  }
+  return false;
+}
+
 void AddPairWarnings(const optics::BracketReport& report, v1::ReduceResult& result) {
   for (const optics::ExposurePairCheck& check : report.pairs) {
     char text[200];
     if (check.pixels == 0) {
+      if (IsSaturated(report, check.longer_s)) continue;
       std::snprintf(text, sizeof(text),
                     "exposures %g s and %g s share no valid pixel; choose them closer together",
                     check.shorter_s, check.longer_s);

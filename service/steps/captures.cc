@@ -89,8 +89,8 @@ absl::StatusOr<std::vector<optics::Stack>> StackCaptures(
   for (const capture::CaptureEntry* entry : captures) {
     const optics::Setting setting{entry->spec.exposure_s, entry->spec.gain_db};
     optics::FrameStacker& stacker = StackerFor(stackers, setting, range);
-    EYEBOX_RETURN_IF_ERROR(recording.VisitFrames(
-        *entry, [&](const Frame& frame) { return stacker.Add(frame.view); }));
+    EYEBOX_RETURN_IF_ERROR(
+        recording.VisitFrames(*entry, [&](const Frame& frame) { return stacker.Add(frame.view); }));
   }
   std::vector<optics::Stack> stacks;
   for (auto& [setting, stacker] : stackers) {

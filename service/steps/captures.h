@@ -29,8 +29,8 @@ absl::StatusOr<std::vector<StimulusCaptures>> LightCaptures(
 
 // Grey full fields only, by rising drive value.
 // Errors: FailedPrecondition (none: says what to record).
-absl::StatusOr<std::vector<StimulusCaptures>> GreyLevels(
-    const capture::RecordingReader& recording, const std::string& series);
+absl::StatusOr<std::vector<StimulusCaptures>> GreyLevels(const capture::RecordingReader& recording,
+                                                         const std::string& series);
 
 // One stack per exposure and gain; captures of the same setting are averaged together.
 // Errors: those of reading.

@@ -48,7 +48,7 @@ THIRD_PARTY = [
     Library("libtiff", r"tiffio\.h", ("capture/base/tiff.cc",)),
     Library("Ceres", r"ceres/.*", ("fit/*.cc",)),
     Library("Eigen", r"Eigen/.*", ("fit/*.cc", "optics/*.cc")),
-    Library("Protocol Buffers", r"google/protobuf/.*", ("service/*", "capture/recording/*")),
+    Library("Protocol Buffers", r"google/(protobuf|rpc)/.*", ("service/*", "capture/recording/*")),
     Library("gRPC", r"grpc(pp)?/.*|eyebox/v1/.*\.grpc\.pb\.h", ("service/*",)),
     Library("CLI11", r"CLI/.*", ("service/cli/*",)),
     Library("printing", r"iostream|print|fmt/.*|spdlog/.*", ("service/*",)),

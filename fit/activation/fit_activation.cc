@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "capture/base/status.h"
 #include "fit/activation/activation_problem.h"
+#include "fit/base/relative_floor.h"
 
 namespace eyebox::fit {
 namespace {

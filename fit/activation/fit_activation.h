@@ -21,13 +21,9 @@ enum class ActivationModel {
 };
 std::string_view NameOf(ActivationModel model);  // "power_offset", "gamma_with_cutoff"
 
-// Relative errors are taken of at least this share of the brightest reading: below it a display
-// is black, and instruments disagree.
-constexpr double kRelativeFloor = 1e-3;
-
 enum class Weighting {
   kMeasuredSigma,  // 1 / sigma^2 of each reading
-  kRelative,       // 1 / max(L, floor)^2: equal relative errors
+  kRelative,       // 1 / max(L, floor)^2: equal relative errors; floor = kRelativeFloor of white
   kUnweighted,     // as usually published; for comparison
 };
 std::string_view NameOf(Weighting weighting);  // "measured_sigma", "relative", "unweighted"

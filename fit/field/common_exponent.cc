@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "capture/base/status.h"
 #include "fit/base/activation.h"
+#include "fit/base/relative_floor.h"
 #include "fit/field/exponent_search.h"
 #include "fit/field/kernels.h"
 #include "fit/field/stack_blocks.h"
@@ -15,9 +16,6 @@
 
 namespace eyebox::fit {
 namespace {
-
-// Errors are taken relative to at least this share of the brightest level's mean.
-constexpr double kRelativeFloor = 1e-3;
 
 std::vector<double> RelativeWeights(const std::vector<double>& means) {
   const double floor = kRelativeFloor * *std::max_element(means.begin(), means.end());

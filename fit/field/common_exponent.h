@@ -27,7 +27,7 @@ struct FieldStack {
 
 struct CommonExponentOptions {
   // Weight of each level's squared residual, above 0, [levels]; empty: 1 / (mean luminance)^2, so
-  // that errors count relatively.
+  // that errors count relatively; the mean of at least kRelativeFloor of the brightest level's.
   std::vector<double> level_weights;
   double gamma_min = 0.3;
   double gamma_max = 8;
@@ -35,21 +35,24 @@ struct CommonExponentOptions {
 
 struct CommonExponentFit {
   double gamma = 0;
-  double gamma_sigma = 0;
-  std::vector<float> gain;        // k, [locations], NaN where not valid
-  std::vector<float> gain_sigma;  // at the fitted gamma and including gamma's share
-  std::vector<float> offset;      // delta, likewise
+  double gamma_sigma = 0;   // from the curvature and the residuals of all locations
+  std::vector<float> gain;  // k, [locations], NaN where not valid
+  // From the location's own residuals, whose noise may be another than its neighbours', and gamma's
+  // share.
+  std::vector<float> gain_sigma;
+  std::vector<float> offset;  // delta, likewise
   std::vector<float> offset_sigma;
   size_t locations = 0;           // that took part
   double degrees_of_freedom = 0;  // locations (levels - 2) - 1
   double weighted_sum_of_squares = 0;
-  double rms_relative = 0;  // of residual / mean luminance of the level
+  double rms_relative = 0;  // of residual / mean luminance of the level (at least the floor)
   std::string termination;  // why the search stopped, in words
 };
 
 // Errors: InvalidArgument (sizes disagree, a drive outside [0, 1] or twice, a weight not above 0, a
 // valid luminance that is not finite: names level and location), FailedPrecondition (fewer than 4
-// levels, no valid location, the optimum lies at a limit of gamma, no luminance rises with drive).
+// levels, no valid location, the optimum lies at a limit of gamma, the mean luminance does not rise
+// with the drive).
 absl::StatusOr<CommonExponentFit> FitCommonExponent(const FieldStack& stack,
                                                     const CommonExponentOptions& options = {});
 

@@ -11,14 +11,15 @@ set -euo pipefail
 
 build_packages=(
   g++ cmake ninja-build pkg-config
-  libabsl-dev libceres-dev libcli11-dev libeigen3-dev libfmt-dev libgpiod-dev
+  libabsl-dev libaravis-dev libceres-dev libcli11-dev libeigen3-dev libfmt-dev libgpiod-dev
   libgrpc++-dev libhdf5-dev libiio-dev
   libopencv-dev # its CMake package demands every module; the four that are used are not enough
   libprotobuf-dev libspdlog-dev libssl-dev libtiff-dev libxxhash-dev
+  libusb-1.0-0-dev # asked for by libaravis-dev's pkg-config file
   protobuf-compiler protobuf-compiler-grpc
 )
 check_packages=(
-  ccache clang-format clang-tidy git
+  aravis-tools ccache clang-format clang-tidy git
   libbenchmark-dev libboost-dev libgmock-dev libgmp-dev libgtest-dev libmpfr-dev librapidcheck-dev
   python3 python3-grpcio python3-h5py python3-numpy python3-protobuf
 )

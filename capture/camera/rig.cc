@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "capture/base/status.h"
+#include "capture/camera/aravis/aravis_rig.h"
 #include "capture/camera/replay/replay_rig.h"
 #include "capture/camera/sim/sim_rig.h"
 
@@ -20,8 +21,8 @@ struct Scheme {
   absl::StatusOr<Rig> (*open)(const RigConfig&, const Clock*);
 };
 
-constexpr std::array<Scheme, 2> kSchemes = {Scheme{"sim", OpenSim},
-                                            Scheme{"replay", OpenReplayRig}};
+constexpr std::array kSchemes = {Scheme{"sim", OpenSim}, Scheme{"replay", OpenReplayRig},
+                                 Scheme{"aravis", OpenAravisRig}};
 
 }  // namespace
 

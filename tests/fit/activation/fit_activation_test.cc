@@ -56,7 +56,7 @@ TEST(FitActivationTest, CovarianceIsThatOfRepeatedSeries) {
       FitActivation(SimulateSeries(truth, 17, 0.01), kCutoff, Weighting::kMeasuredSigma);
   ASSERT_TRUE(fit.ok()) << fit.status();
   const double scale = std::max(fit->chi_square / fit->degrees_of_freedom, 1.0);
-  constexpr int kSeries = 400;
+  constexpr int kSeries = 200;
   std::array<double, 4> squares{};
   for (uint64_t seed = 0; seed < kSeries; ++seed) {
     ActivationProblem problem{kCutoff, {}};

@@ -91,13 +91,13 @@ TEST(CommonExponentCeresTest, EqualWeightsAgree) {
 }
 
 TEST(CommonExponentCeresTest, RandomMasksAgree) {
-  SimulatedField field = SimulateField({700, 9, 2.6, 0.01, 1, 7});
+  SimulatedField field = SimulateField({10000, 17, 2.6, 0.01, 1, 7});
   RandomStream random({8});
-  for (size_t i = 0; i < 700; ++i) field.valid.push_back(random.Uniform() < 0.7 ? 1 : 0);
+  for (size_t i = 0; i < 10000; ++i) field.valid.push_back(random.Uniform() < 0.7 ? 1 : 0);
   for (size_t i = 0; i < field.luminance.size(); ++i) {
-    if (field.valid[i % 700] == 0) field.luminance[i] = std::nanf("");
+    if (field.valid[i % 10000] == 0) field.luminance[i] = std::nanf("");
   }
-  ExpectAgreement(field, std::vector<double>(9, 0.01));
+  ExpectAgreement(field, std::vector<double>(17, 0.01));
 }
 
 TEST(CommonExponentCeresTest, DataWithoutNoiseAgree) {

@@ -43,7 +43,7 @@ struct SampleBlock {
   uint64_t sequence = 0;     // of the first sample; conversions are counted from 0 at Start()
   uint64_t lost_before = 0;  // conversions between the previous block and this one
   std::vector<PhotodiodeSample> samples = {};  // never empty, times ascending
-  int64_t time_uncertainty_ns = 0;        // bound of the error of monotonic_ns common to the block
+  int64_t time_uncertainty_ns = 0;  // bound of the error of monotonic_ns common to the block
   // The converter's own clock, one for each sample; empty where it has none.
   std::vector<int64_t> device_time_ns = {};
 };

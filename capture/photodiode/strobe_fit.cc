@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 namespace eyebox::capture {
@@ -17,6 +18,65 @@ double SumOfSquares(std::span<const double> values) {
   for (const double value : values) sum += value * value;
   return sum;
 }
+
+// The normal equations of a sinusoid.
+struct Sums {
+  double cc = 0;
+  double ss = 0;
+  double cs = 0;
+  double cv = 0;
+  double sv = 0;
+
+  void Add(double c, double s, double value) {
+    cc += c * c;
+    ss += s * s;
+    cs += c * s;
+    cv += c * value;
+    sv += s * value;
+  }
+
+  Sinusoid Solve(double frequency_hz, double sum_before) const {
+    Sinusoid fit = {.frequency_hz = frequency_hz};
+    const double determinant = cc * ss - cs * cs;
+    if (determinant > 1e-9 * cc * cc) {
+      fit.cosine = (cv * ss - sv * cs) / determinant;
+      fit.sine = (sv * cc - cv * cs) / determinant;
+    }
+    fit.sum_of_squares = sum_before - fit.cosine * cv - fit.sine * sv;
+    return fit;
+  }
+};
+
+// The phase of every sample, turned from one frequency of the grid to the next by one complex
+// multiplication: twenty times faster than a sine and a cosine each, and good to 1e-11 after 1e5.
+class Phasors {
+ public:
+  Phasors(const StrobeRecord& record, double low_hz, double step_hz) {
+    for (const double time_s : record.times_s) {
+      const double first = kTwoPi * low_hz * time_s;
+      const double step = kTwoPi * step_hz * time_s;
+      phasors_.push_back({std::cos(first), std::sin(first), std::cos(step), std::sin(step)});
+    }
+  }
+
+  Sums SumAndTurn(std::span<const double> values) {
+    Sums sums;
+    for (size_t i = 0; i < values.size(); ++i) {
+      Phasor& p = phasors_[i];
+      sums.Add(p.cosine, p.sine, values[i]);
+      const double cosine = p.cosine * p.step_cosine - p.sine * p.step_sine;
+      p.sine = p.sine * p.step_cosine + p.cosine * p.step_sine;
+      p.cosine = cosine;
+    }
+    return sums;
+  }
+
+ private:
+  struct Phasor {
+    double cosine, sine, step_cosine, step_sine;
+  };
+  std::vector<Phasor> phasors_;
+};
 
 double Median(std::vector<double> values) {
   const auto middle = values.begin() + values.size() / 2;
@@ -80,36 +140,23 @@ void FindPlateaus(std::span<const double> means, FoldedPeriod& folded) {
 }  // namespace
 
 Sinusoid FitAmplitudes(const StrobeRecord& record, double frequency_hz) {
-  double cc = 0;
-  double ss = 0;
-  double cs = 0;
-  double cv = 0;
-  double sv = 0;
+  Sums sums;
   for (size_t i = 0; i < record.times_s.size(); ++i) {
     const double angle = kTwoPi * frequency_hz * record.times_s[i];
-    const double c = std::cos(angle);
-    const double s = std::sin(angle);
-    cc += c * c;
-    ss += s * s;
-    cs += c * s;
-    cv += c * record.values[i];
-    sv += s * record.values[i];
+    sums.Add(std::cos(angle), std::sin(angle), record.values[i]);
   }
-  Sinusoid fit = {.frequency_hz = frequency_hz};
-  const double determinant = cc * ss - cs * cs;
-  if (determinant > 1e-9 * cc * cc) {
-    fit.cosine = (cv * ss - sv * cs) / determinant;
-    fit.sine = (sv * cc - cv * cs) / determinant;
-  }
-  fit.sum_of_squares = SumOfSquares(record.values) - fit.cosine * cv - fit.sine * sv;
-  return fit;
+  return sums.Solve(frequency_hz, SumOfSquares(record.values));
 }
 
 Sinusoid FindSinusoid(const StrobeRecord& record, double low_hz, double high_hz) {
   const double step_hz = 1 / (4 * record.span_s);
-  Sinusoid best = FitAmplitudes(record, low_hz);
-  for (double hz = low_hz + step_hz; hz <= high_hz; hz += step_hz) {
-    const Sinusoid fit = FitAmplitudes(record, hz);
+  const double sum_before = SumOfSquares(record.values);
+  Phasors phasors(record, low_hz, step_hz);
+  Sinusoid best = {.frequency_hz = low_hz, .sum_of_squares = sum_before};
+  const auto steps = static_cast<int64_t>((high_hz - low_hz) / step_hz);
+  for (int64_t i = 0; i <= steps; ++i) {
+    const double hz = low_hz + static_cast<double>(i) * step_hz;
+    const Sinusoid fit = phasors.SumAndTurn(record.values).Solve(hz, sum_before);
     if (fit.sum_of_squares < best.sum_of_squares) best = fit;
   }
   double left = best.frequency_hz - step_hz;

@@ -8,7 +8,10 @@
 #include <string>
 
 #include "capture/camera/aravis/aravis_rig.h"
+#include "capture/plan.h"
+#include "capture/run.h"
 #include "tests/capture/camera/aravis_fake_process.h"
+#include "tests/support/memory_recording.h"
 
 namespace eyebox::capture {
 namespace {
@@ -201,6 +204,25 @@ TEST_F(AravisLoopback, AFrameThatLostPacketsIsNeverData) {
   }
   EXPECT_GT(whole, 0);
   EXPECT_GT(incomplete, 0);
+}
+
+TEST_F(AravisLoopback, ARunOverALossyNetworkRecordsWholeFramesOnly) {
+  StartCamera(2);  // 3 frames of 10 lose a packet
+  auto rig = OpenRig(kMono8);
+  ASSERT_TRUE(rig.ok()) << rig.status();
+  const auto plan = MakeGreyPlan(
+      {.levels = 2, .exposures_s = {0.01}, .repeats = 2, .dark_repeats = 2, .flat_repeats = 0});
+  ASSERT_TRUE(plan.ok()) << plan.status();
+  MemoryRecording recording;
+  const auto report = RunPlan(*rig, *plan, recording, {.attempts = 50});
+  ASSERT_TRUE(report.ok()) << report.status();
+  EXPECT_EQ(recording.Published().size(), 3);
+  for (const auto& capture : recording.Published()) {
+    ASSERT_EQ(capture->frames.size(), 2);
+    for (const Frame& frame : capture->frames) EXPECT_TRUE(IsRamp(frame));
+    EXPECT_EQ(capture->frames[1].metadata.camera_frame_id,
+              capture->frames[0].metadata.camera_frame_id + 1);
+  }
 }
 
 TEST_F(AravisLoopback, AKilledCameraIsLostAndItsSuccessorIsOpenedAnew) {

@@ -1,0 +1,168 @@
+"""The Python client against the real server and the real pipeline.
+
+    EYEBOX_BINARY=build/dev/bin/eyebox python3 python_client_test.py
+"""
+
+import filecmp
+import os
+import signal
+import stat
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+PACKAGE = Path(__file__).resolve().parents[3] / "service" / "python"
+sys.path.insert(0, str(PACKAGE))
+
+import eyebox  # noqa: E402  found through the line above
+
+EYEBOX = os.environ["EYEBOX_BINARY"]
+LIMIT_S = 240
+
+
+def run(*command, **options):
+    return subprocess.run([str(part) for part in command], capture_output=True, text=True,
+                          timeout=LIMIT_S, check=False, **options)
+
+
+class Server:
+    """`eyebox serve` as a child process, ready when constructed."""
+
+    def __init__(self, folder):
+        self.address = f"unix:{folder}/eyebox.sock"
+        self._process = subprocess.Popen(
+            [EYEBOX, "serve", "--listen", self.address, "--data", f"{folder}/data",
+             "--state", f"{folder}/state"], stdout=subprocess.PIPE, text=True)
+        self.ready = self._process.stdout.readline()
+
+    def stop(self, how=signal.SIGTERM):
+        self._process.send_signal(how)
+        self._process.communicate(timeout=LIMIT_S)
+        return self._process.returncode
+
+
+class PythonClientTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls._temporary = tempfile.TemporaryDirectory()
+        cls.folder = Path(cls._temporary.name)
+        made = run(EYEBOX, "simulate", "sim:rift-s-like", "--seed", 5, "--levels", 7,
+                   "--exposures", "0.0125,0.1", "--repeats", 2, "--out", cls.folder / "data/rec")
+        assert made.returncode == 0, made.stderr
+        cls.expected = cls.folder / "expected"
+        done = run(EYEBOX, "run", cls.folder / "data/rec", "--out", cls.expected)
+        assert done.returncode == 0, done.stderr
+
+    @classmethod
+    def tearDownClass(cls):
+        cls._temporary.cleanup()
+
+    def setUp(self):
+        self.server = Server(self.folder)
+        self.addCleanup(lambda: self.server.stop())
+        self.client = eyebox.connect(self.server.address)
+        self.addCleanup(lambda: self.client.close())
+
+    def assert_same_files(self, folder):
+        names = sorted(path.name for path in self.expected.iterdir())
+        self.assertEqual(sorted(path.name for path in folder.iterdir()), names)
+        _, different, missing = filecmp.cmpfiles(self.expected, folder, names, shallow=False)
+        self.assertEqual((different, missing), ([], []))
+        self.assertIn("linearize.cube", names)
+        self.assertIn("report.html", names)
+
+    def test_server_says_when_it_is_ready_and_its_socket_is_private(self):
+        self.assertIn(self.server.address, self.server.ready)
+        mode = (self.folder / "eyebox.sock").stat().st_mode
+        self.assertTrue(stat.S_ISSOCK(mode))
+        self.assertEqual(stat.S_IMODE(mode), 0o660)
+
+    def test_script_gives_the_bytes_of_the_command_line(self):
+        out = self.folder / "by-script"
+        done = run(sys.executable, PACKAGE / "measure.py", "--address", self.server.address,
+                   "--recording", "rec", "--out", out)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("gamma", done.stdout)
+        self.assertIn("100 %", done.stderr)
+        self.assert_same_files(out)
+
+    def test_job_outlives_the_server_that_was_killed(self):
+        job = self.client.run(recording="rec", request_id="killed")
+        first = next(job.watch())
+        self.assertEqual(first.sequence, 1)
+        self.server.stop(signal.SIGKILL)
+        self.server = Server(self.folder)
+        updates = list(job.watch(from_sequence=2))
+        self.assertEqual([update.sequence for update in updates],
+                         list(range(2, 2 + len(updates))))
+        self.assertEqual(updates[-1].state, "SUCCEEDED")
+        self.assertEqual(self.client.run(recording="rec", request_id="killed").name, job.name)
+        job.download_all(self.folder / "after-kill")
+        self.assert_same_files(self.folder / "after-kill")
+
+    def test_rig_gives_the_bytes_of_the_command_line(self):
+        out = self.folder / "by-command"
+        done = run(EYEBOX, "run", "sim:rift-s-like", "--out", out,
+                   "--recording", self.folder / "rig-recording")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        job = self.client.run(rig="sim:rift-s-like")
+        files = job.download_all(self.folder / "by-rig")
+        self.assertEqual(sorted(file.name for file in files),
+                         sorted(path.name for path in out.iterdir()))
+        for file in files:
+            self.assertEqual(file.read_bytes(), (out / file.name).read_bytes(), file.name)
+
+    def test_result_is_the_message_that_the_command_line_prints(self):
+        from google.protobuf import json_format
+        from eyebox.v1 import results_pb2
+        wanted = json_format.Parse((self.expected / "result.json").read_text(),
+                                   results_pb2.RunResult())
+        self.assertEqual(self.client.run(recording="rec", request_id="r").result(), wanted)
+
+    def test_errors_carry_the_field_and_the_advice(self):
+        with self.assertRaises(eyebox.InvalidRequest) as caught:
+            self.client.run(recording="../secret")
+        self.assertEqual(caught.exception.where, "recording")
+        self.assertIn("give", caught.exception.advice)
+        with self.assertRaises(eyebox.NotFound):
+            self.client.run(recording="missing")
+        with self.assertRaises(eyebox.NotFound):
+            self.client.job("jobs/999999")
+
+    def test_failed_job_says_what_was_wrong_with_the_recording(self):
+        (self.folder / "data" / "empty").mkdir(exist_ok=True)
+        job = self.client.run(recording="empty")
+        with self.assertRaises(eyebox.JobFailed) as caught:
+            job.result()
+        self.assertIn("empty", str(caught.exception))
+        self.assertNotIn("/proc", str(caught.exception))
+
+    def test_cancelled_job_has_no_result(self):
+        job = self.client.run(rig="sim:rift-s-like", request_id="cancelled")
+        job.cancel()
+        with self.assertRaises(eyebox.Cancelled):
+            job.result()
+        self.assertEqual(job.state, "CANCELLED")
+
+    def test_orderly_stop_ends_with_success(self):
+        self.assertEqual(self.server.stop(), 0)
+        self.assertFalse((self.folder / "eyebox.sock").exists())
+        self.server = Server(self.folder)
+
+
+class WithoutServerTest(unittest.TestCase):
+    def test_no_server_is_said_with_what_to_do(self):
+        with self.assertRaises(eyebox.ServerUnavailable) as caught:
+            eyebox.connect("unix:/nonexistent/eyebox.sock", timeout_s=0.2)
+        self.assertIn("eyebox serve", caught.exception.advice)
+
+    def test_tcp_is_refused(self):
+        done = run(EYEBOX, "serve", "--listen", "localhost:0")
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("mutual TLS", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

@@ -12,27 +12,11 @@
 
 #include "capture/recording/reader.h"
 #include "capture/recording/writer.h"
+#include "tests/support/temporary_folder.h"
 
 namespace eyebox::capture {
 
 constexpr ImageSize kFrameSize = {.width_px = 7, .height_px = 5};
-
-// A folder of its own that goes away with the test.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = testing::TempDir() + "/eyebox_XXXXXX";
-    path_ = ::mkdtemp(name.data());
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 inline Frame FrameOf(int number, ImageSize size = kFrameSize) {
   auto counts_dn = std::make_shared<std::vector<uint16_t>>(size.PixelCount());

@@ -32,6 +32,8 @@ class IioDevice {
 
   virtual std::string Name() const = 0;
   virtual ChannelFormat Format() const = 0;
+  // Whether its trigger is its own (data ready), so that its own rate is that of the conversions.
+  virtual bool TimesItself() const = 0;
 
   // Attributes of the device. Errors: NotFound (there is none of this name).
   virtual absl::Status WriteAttribute(const std::string& name, const std::string& value) = 0;

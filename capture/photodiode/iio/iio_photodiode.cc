@@ -101,11 +101,11 @@ class IioPhotodiode final : public Photodiode {
     const std::string text = std::to_string(rate_hz);
     absl::Status written = device_->WriteTriggerAttribute(kRateAttribute, text);
     const bool of_trigger = !absl::IsNotFound(written);
-    if (!of_trigger) written = device_->WriteAttribute(kRateAttribute, text);
+    if (!of_trigger && device_->TimesItself()) {
+      written = device_->WriteAttribute(kRateAttribute, text);
+    }
     if (absl::IsNotFound(written)) {
-      return BadInput(info_.uri + " sample_rate_hz",
-                      "cannot be set: neither trigger nor device "
-                      "has a sampling_frequency",
+      return BadInput(info_.uri + " sample_rate_hz", "cannot be set with this trigger",
                       "use an hrtimer trigger, or let pulses start the conversions");
     }
     EYEBOX_RETURN_IF_ERROR(written);

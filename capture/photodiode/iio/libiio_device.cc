@@ -101,6 +101,12 @@ class LibiioDevice final : public IioDevice {
     return {.bits = static_cast<int>(format->bits), .is_signed = format->is_signed};
   }
 
+  // Drivers name the trigger of a device after it: ads1015-dev0.
+  bool TimesItself() const override {
+    return Called(iio_device_get_name(trigger_))
+        .starts_with(Called(iio_device_get_name(device_)) + "-dev");
+  }
+
   absl::Status WriteAttribute(const std::string& name, const std::string& value) override {
     return Write(device_, name, value);
   }
@@ -139,25 +145,27 @@ class LibiioDevice final : public IioDevice {
   void CloseBuffer() override { buffer_.reset(); }
 
  private:
-  static absl::Status AttributeStatus(const iio_device* device, const std::string& name,
-                                      int error) {
-    const std::string where = Called(iio_device_get_id(device)) + "/" + name;
-    if (error == ENOENT) return Missing(where, "is not there", "");
-    return Failed(where, error);
+  // libiio would try to create a file of that name and report what sysfs says to that.
+  static absl::Status CheckHas(const iio_device* device, const std::string& name) {
+    if (iio_device_find_attr(device, name.c_str()) != nullptr) return absl::OkStatus();
+    return Missing(Called(iio_device_get_id(device)) + "/" + name, "is not there",
+                   "use another converter or trigger");
   }
 
   static absl::Status Write(const iio_device* device, const std::string& name,
                             const std::string& value) {
+    EYEBOX_RETURN_IF_ERROR(CheckHas(device, name));
     const ssize_t written = iio_device_attr_write(device, name.c_str(), value.c_str());
-    return written < 0 ? AttributeStatus(device, name, static_cast<int>(-written))
-                       : absl::OkStatus();
+    if (written >= 0) return absl::OkStatus();
+    return Failed(Called(iio_device_get_id(device)) + "/" + name, static_cast<int>(-written));
   }
 
   static absl::StatusOr<std::string> ReadOf(const iio_device* device, const std::string& name) {
+    EYEBOX_RETURN_IF_ERROR(CheckHas(device, name));
     std::array<char, 4096> text{};
     const ssize_t read = iio_device_attr_read(device, name.c_str(), text.data(), text.size() - 1);
-    if (read < 0) return AttributeStatus(device, name, static_cast<int>(-read));
-    return std::string(text.data());
+    if (read >= 0) return std::string(text.data());
+    return Failed(Called(iio_device_get_id(device)) + "/" + name, static_cast<int>(-read));
   }
 
   // The value is converted to the host's order, shifted and extended to the width it is stored in.

@@ -16,7 +16,7 @@ namespace eyebox::capture {
 
 // counts = dark + level (1 + drift t) light(t) + noise, rounded and clipped to the rails.
 struct SimPhotodiodeParameters {
-  StrobeLight light;
+  StrobeLight light = {};
   double level_counts = 600;  // while lit, above the dark
   double dark_counts = 20;
   double noise_counts = 3;   // rms

@@ -25,6 +25,7 @@ constexpr int64_t kMs = 1'000'000;
 struct Bench {
   std::map<std::string, std::string> attributes = {{"current_timestamp_clock", "realtime\n"}};
   std::map<std::string, std::string> trigger_attributes = {{"sampling_frequency", "100\n"}};
+  bool times_itself = false;
   bool sticky_clock = false;  // takes the clock and keeps its own
   std::deque<std::vector<RawSample>> batches;
   absl::Status end;  // after them
@@ -38,6 +39,7 @@ class FakeIioDevice final : public iio::IioDevice {
 
   std::string Name() const override { return "fake-adc"; }
   iio::ChannelFormat Format() const override { return format_; }
+  bool TimesItself() const override { return bench_->times_itself; }
   absl::Status WriteAttribute(const std::string& name, const std::string& value) override {
     if (bench_->sticky_clock) return absl::OkStatus();
     return Write(bench_->attributes, name, value);
@@ -132,16 +134,18 @@ TEST_F(IioPhotodiode, SetsTheRateOfItsTriggerAndReadsItBack) {
   EXPECT_THAT(bench_.trigger_attributes["sampling_frequency"], HasSubstr("250"));
 }
 
-TEST_F(IioPhotodiode, SetsItsOwnRateWhereTheTriggerHasNone) {
+TEST_F(IioPhotodiode, SetsItsOwnRateWhereItTimesItself) {
   bench_.trigger_attributes.clear();
+  bench_.times_itself = true;
   bench_.attributes["sampling_frequency"] = "128\n";
   auto photodiode = Open();
   ASSERT_TRUE((*photodiode)->Configure({.sample_rate_hz = 490}).ok());
   EXPECT_THAT(bench_.attributes["sampling_frequency"], HasSubstr("490"));
 }
 
-TEST_F(IioPhotodiode, WithoutAnyRateItCanOnlyBePulseStarted) {
+TEST_F(IioPhotodiode, WithATriggerWithoutRateItCanOnlyBePulseStarted) {
   bench_.trigger_attributes.clear();
+  bench_.attributes["sampling_frequency"] = "128\n";  // of single conversions, not of the trigger
   auto photodiode = Open();
   EXPECT_TRUE(absl::IsInvalidArgument((*photodiode)->Configure({}).status()));
   EXPECT_TRUE((*photodiode)->Configure({.pulse_started = true}).ok());

@@ -26,7 +26,7 @@ using DriveRgb = std::array<double, 3>;
 
 struct Stimulus {
   StimulusPattern pattern = StimulusPattern::kFullField;
-  double diameter_deg = 0;  // of the disk; 0 for a full field
+  double diameter_deg = 0;        // of the disk; 0 for a full field
   std::optional<DriveRgb> drive;  // empty where unknown (frames measured elsewhere)
   friend bool operator==(const Stimulus&, const Stimulus&) = default;
 };

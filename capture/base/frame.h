@@ -25,8 +25,8 @@ struct FrameMetadata {
   BufferStatus status = BufferStatus::kComplete;
   uint64_t camera_frame_id = 0;  // as the device counts; a gap is a drop
   uint32_t missing_packets = 0;
-  std::optional<int64_t> device_time_ns;  // the camera's own clock
-  int64_t monotonic_time_ns = 0;          // CLOCK_MONOTONIC at reception
+  std::optional<int64_t> device_time_ns;   // the camera's own clock
+  int64_t monotonic_time_ns = 0;           // CLOCK_MONOTONIC at reception
   std::optional<int64_t> trigger_time_ns;  // CLOCK_MONOTONIC of the trigger that caused it
   double exposure_asked_s = 0;
   std::optional<double> exposure_reported_s;

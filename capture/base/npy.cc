@@ -26,8 +26,7 @@ std::string Header(ImageSize size) {
 
 absl::StatusOr<ImageSize> ParseHeader(const std::string& file, const std::string& text) {
   ImageSize size;
-  if (std::sscanf(text.c_str(),
-                  "{'descr': '<f4', 'fortran_order': False, 'shape': (%d, %d), }",
+  if (std::sscanf(text.c_str(), "{'descr': '<f4', 'fortran_order': False, 'shape': (%d, %d), }",
                   &size.height_px, &size.width_px) != 2 ||
       size.height_px <= 0 || size.width_px <= 0) {
     return BadInput(file, "is not a two-dimensional little-endian float32 array in C order",
@@ -64,8 +63,7 @@ absl::StatusOr<Image<float>> ReadNpy(const std::filesystem::path& file) {
     return Corrupt(file.string(), "its length does not match the shape it states",
                    "copy or compute it again");
   }
-  std::memcpy(map.pixels().data(), bytes.data() + prefix + header_bytes,
-              map.pixels().size_bytes());
+  std::memcpy(map.pixels().data(), bytes.data() + prefix + header_bytes, map.pixels().size_bytes());
   return map;
 }
 

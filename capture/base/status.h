@@ -38,12 +38,12 @@ int ExitCodeFor(const absl::Status& status);
 #define EYEBOX_STATUS_CONCAT_INNER(a, b) a##b
 #define EYEBOX_STATUS_CONCAT(a, b) EYEBOX_STATUS_CONCAT_INNER(a, b)
 
-#define EYEBOX_RETURN_IF_ERROR(expression)                     \
-  do {                                                         \
+#define EYEBOX_RETURN_IF_ERROR(expression)                                                       \
+  do {                                                                                           \
     if (absl::Status eyebox_status_ = (expression); !eyebox_status_.ok()) return eyebox_status_; \
   } while (false)
 
-#define EYEBOX_ASSIGN_OR_RETURN(declaration, expression)                                        \
+#define EYEBOX_ASSIGN_OR_RETURN(declaration, expression) \
   EYEBOX_ASSIGN_OR_RETURN_IMPL(EYEBOX_STATUS_CONCAT(eyebox_or_, __LINE__), declaration, expression)
 
 #define EYEBOX_ASSIGN_OR_RETURN_IMPL(result, declaration, expression) \

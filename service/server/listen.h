@@ -2,8 +2,6 @@
 #ifndef EYEBOX_SERVICE_SERVER_LISTEN_H_
 #define EYEBOX_SERVICE_SERVER_LISTEN_H_
 
-#include <sys/types.h>
-
 #include <filesystem>
 #include <string_view>
 
@@ -29,7 +27,7 @@ class SocketMode {
   SocketMode& operator=(const SocketMode&) = delete;
 
  private:
-  const mode_t previous_;
+  const unsigned previous_;  // a mode_t
 };
 
 }  // namespace eyebox::service

@@ -42,6 +42,13 @@ absl::Status CreateFolder(const fs::path& folder) {
   return error ? Failed(folder, error) : absl::OkStatus();
 }
 
+// As the socket: what clients measured is for owner and group.
+absl::Status CloseToOthers(const fs::path& folder) {
+  std::error_code error;
+  fs::permissions(folder, fs::perms::others_all, fs::perm_options::remove, error);
+  return error ? Failed(folder, error) : absl::OkStatus();
+}
+
 absl::Status Remove(const fs::path& path) {
   std::error_code error;
   fs::remove_all(path, error);
@@ -86,7 +93,10 @@ StoredJob LoadJob(const fs::path& folder) {
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<JobStore>> JobStore::Open(const fs::path& state) {
+  std::error_code error;
+  const bool is_new = !fs::exists(state, error);
   EYEBOX_RETURN_IF_ERROR(CreateFolder(state / "jobs"));
+  if (is_new) EYEBOX_RETURN_IF_ERROR(CloseToOthers(state));
   OwnedFd lock(open((state / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0640));
   if (lock.get() < 0) return SystemFailed((state / "lock").string(), errno, kRemedy);
   if (flock(lock.get(), LOCK_EX | LOCK_NB) != 0) {

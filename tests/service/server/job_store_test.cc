@@ -56,6 +56,11 @@ TEST_F(JobStoreTest, JobsComeBackAsTheyWereOldestFirst) {
   EXPECT_EQ(first.events[1].DebugString(), EventNumber(2, v1::JOB_STATE_RUNNING).DebugString());
 }
 
+TEST_F(JobStoreTest, NewStateFolderIsClosedToOthers) {
+  EXPECT_EQ(std::filesystem::status(state()).permissions() & std::filesystem::perms::others_all,
+            std::filesystem::perms::none);
+}
+
 TEST_F(JobStoreTest, SecondServerOnTheSameStateIsRefused) {
   const auto second = JobStore::Open(state());
   EXPECT_TRUE(absl::IsFailedPrecondition(second.status()));

@@ -2,9 +2,8 @@
 #ifndef EYEBOX_TESTS_SERVICE_SERVER_MANUAL_WORK_H_
 #define EYEBOX_TESTS_SERVICE_SERVER_MANUAL_WORK_H_
 
-#include <stdlib.h>
-
 #include <condition_variable>
+#include <cstdlib>
 #include <filesystem>
 #include <mutex>
 #include <string>

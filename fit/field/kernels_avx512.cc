@@ -2,7 +2,13 @@
 
 namespace eyebox::fit {
 
-struct Avx512;
+struct Avx512 {
+  static constexpr int kWidth = 8;
+  using Doubles = double __attribute__((vector_size(64)));
+  using Words = int64_t __attribute__((vector_size(64)));
+  using Floats = float __attribute__((vector_size(32)));
+  using Bytes = uint8_t __attribute__((vector_size(8)));
+};
 
 // Compiled with the flag of these instructions where the compiler has them.
 const Kernels* Avx512Kernels() {

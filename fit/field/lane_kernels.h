@@ -1,5 +1,6 @@
-// The inner loops over locations, eight at a time. Each instruction set compiles its own instance;
-// all of them do the same operations in the same order, so that the bits do not depend on it.
+// The inner loops over locations, in kLanes partial sums. Each instruction set compiles its own
+// instance and works on kWidth of the lanes at a time, as many as its registers hold; all of them
+// do the same operations on a lane in the same order, so that the bits do not depend on it.
 // Nothing inline of the standard library may stand here: the linker could take an instance of it
 // that a processor without these instructions cannot run.
 #ifndef EYEBOX_FIT_FIELD_LANE_KERNELS_H_
@@ -12,13 +13,15 @@
 
 namespace eyebox::fit {
 
+// InstructionSet: kWidth and the vectors Doubles, Words (int64_t), Floats, Bytes (uint8_t) of it.
 template <typename InstructionSet>
 struct LaneKernels {
-  using Doubles = double __attribute__((vector_size(64)));
-  using Words = int64_t __attribute__((vector_size(64)));
-  using Floats = float __attribute__((vector_size(32)));
-  using Bytes = uint8_t __attribute__((vector_size(8)));
-  static_assert(kBlockLocations % kLanes == 0 && kLevelTile == 3);
+  static constexpr int kWidth = InstructionSet::kWidth;
+  using Doubles = typename InstructionSet::Doubles;
+  using Words = typename InstructionSet::Words;
+  using Floats = typename InstructionSet::Floats;
+  using Bytes = typename InstructionSet::Bytes;
+  static_assert(kBlockLocations % (2 * kLanes) == 0 && kLanes % kWidth == 0 && kLevelTile == 3);
 
   template <typename Lanes, typename T>
   static Lanes Get(const T* from) {
@@ -32,45 +35,50 @@ struct LaneKernels {
     __builtin_memcpy(to, &lanes, sizeof(lanes));
   }
 
-  static double Sum(const Doubles& lanes) {
-    return ((lanes[0] + lanes[1]) + (lanes[2] + lanes[3])) +
-           ((lanes[4] + lanes[5]) + (lanes[6] + lanes[7]));
+  static double Sum(const double* lanes) {
+    double sum = 0;
+    for (int lane = 0; lane < kLanes; ++lane) sum += lanes[lane];
+    return sum;
   }
 
   // Level by level: rows lie a power of two apart often enough, and lines of 17 of them at once
   // would drive each other out of the caches.
   static bool Load(const FloatBlock& from, int levels, double* block) {
-    Words kept[kBlockLocations / kLanes];
-    for (int i = 0; i < kBlockLocations; i += kLanes) {
-      kept[i / kLanes] = ~Words{};
+    Words kept[kBlockLocations / kWidth];
+    for (int i = 0; i < kBlockLocations; i += kWidth) {
+      kept[i / kWidth] = ~Words{};
       if (from.valid == nullptr) continue;
-      kept[i / kLanes] = __builtin_convertvector(Get<Bytes>(from.valid + i), Words) != 0;
+      kept[i / kWidth] = __builtin_convertvector(Get<Bytes>(from.valid + i), Words) != 0;
     }
     Doubles doubt{};  // 0, or NaN once a value was infinite or NaN
     for (int level = 0; level < levels; ++level) {
       const float* row = from.luminance + level * from.stride;
-      for (int i = 0; i < kBlockLocations; i += kLanes) {
+      for (int i = 0; i < kBlockLocations; i += kWidth) {
         __builtin_prefetch(row + i + kBlockLocations);
         const auto value = __builtin_convertvector(Get<Floats>(row + i), Doubles);
         const auto masked =
-            reinterpret_cast<Doubles>(reinterpret_cast<Words>(value) & kept[i / kLanes]);
+            reinterpret_cast<Doubles>(reinterpret_cast<Words>(value) & kept[i / kWidth]);
         doubt += masked - masked;
         Put(masked, block + level * kBlockLocations + i);
       }
     }
-    return Sum(doubt) == 0;
+    bool finite = true;
+    for (int lane = 0; lane < kWidth; ++lane) finite &= doubt[lane] == 0;
+    return finite;
   }
 
   static void Accumulate(const double* block, int padded_levels, Moments moments) {
-    double* products = moments.products;
-    for (int a = 0; a < padded_levels; a += kLevelTile) {
-      const double* rows = block + a * kBlockLocations;
-      for (int k = 0; k < kLevelTile; ++k) {
-        AddSums(rows + k * kBlockLocations, moments.sums + (a + k) * kLanes);
-      }
-      for (int b = a; b < padded_levels; b += kLevelTile) {
-        AddTile(rows, block + b * kBlockLocations, products);
-        products += kLevelTile * kLevelTile * kLanes;
+    for (int first = 0; first < kLanes; first += kWidth) {
+      double* products = moments.products + first;
+      for (int a = 0; a < padded_levels; a += kLevelTile) {
+        const double* rows = block + a * kBlockLocations + first;
+        for (int k = 0; k < kLevelTile; ++k) {
+          AddSums(rows + k * kBlockLocations, moments.sums + (a + k) * kLanes + first);
+        }
+        for (int b = a; b < padded_levels; b += kLevelTile) {
+          AddTile(rows, block + b * kBlockLocations + first, products);
+          products += kLevelTile * kLevelTile * kLanes;
+        }
       }
     }
   }
@@ -78,7 +86,7 @@ struct LaneKernels {
   // Fused or not gives the same bits: the product of two floats is exact as a double.
   static void AddProduct(const Doubles& a, const Doubles& b, Doubles& sum) {
 #ifdef __FMA__
-    for (int lane = 0; lane < kLanes; ++lane) {
+    for (int lane = 0; lane < kWidth; ++lane) {
       sum[lane] = __builtin_fma(a[lane], b[lane], sum[lane]);
     }
 #else
@@ -122,14 +130,14 @@ struct LaneKernels {
   }
 
   static Doubles Root(Doubles lanes) {
-    for (int lane = 0; lane < kLanes; ++lane) lanes[lane] = __builtin_sqrt(lanes[lane]);
+    for (int lane = 0; lane < kWidth; ++lane) lanes[lane] = __builtin_sqrt(lanes[lane]);
     return lanes;
   }
 
   static void FitLines(const double* block, const LineSolver& solver, const LineMaps& maps,
                        SquaredResiduals& squared) {
-    Doubles weighted_total{}, relative_total{};
-    for (int i = 0; i < kBlockLocations; i += kLanes) {
+    double weighted_total[kLanes] = {}, relative_total[kLanes] = {};
+    for (int i = 0; i < kBlockLocations; i += kWidth) {
       Doubles gain{}, offset{}, weighted{}, relative{};
       for (int level = 0; level < solver.levels; ++level) {
         const auto value = Get<Doubles>(block + level * kBlockLocations + i);
@@ -143,8 +151,8 @@ struct LaneKernels {
         weighted += solver.weight[level] * square;
         relative += solver.relative_weight[level] * square;
       }
-      weighted_total += weighted;
-      relative_total += relative;
+      Add(weighted, weighted_total + i % kLanes);
+      Add(relative, relative_total + i % kLanes);
       const Doubles gain_squared = gain * gain;
       const Doubles gain_variance =
           solver.gain_variance * weighted + solver.gain_variance_of_gamma * gain_squared;

@@ -144,12 +144,13 @@ class Parser {
     if (word == "LUT_3D_SIZE") return Size(Trim(rest));
     if (word == "DOMAIN_MIN") return Domain(rest, cube_.domain_min);
     if (word == "DOMAIN_MAX") return Domain(rest, cube_.domain_max);
+    if (word == "LUT_3D_INPUT_RANGE") return InputRange(rest);
     if (word == "LUT_1D_SIZE") {
       return Refuse("the table is one-dimensional (LUT_1D_SIZE)",
                     "give a three-dimensional table (LUT_3D_SIZE)");
     }
     return Refuse(absl::StrCat(Quoted(word), " is no keyword of a 3-D .cube file"),
-                  "use TITLE, LUT_3D_SIZE, DOMAIN_MIN and DOMAIN_MAX only");
+                  "use TITLE, LUT_3D_SIZE, DOMAIN_MIN, DOMAIN_MAX, LUT_3D_INPUT_RANGE only");
   }
 
   absl::Status Title(std::string_view text) {
@@ -176,7 +177,24 @@ class Parser {
 
   absl::Status Domain(std::string_view text, std::array<double, 3>& limit) {
     domain_line_ = line_;
+    if (seen_.contains("LUT_3D_INPUT_RANGE")) {
+      return Refuse("DOMAIN stands beside LUT_3D_INPUT_RANGE", "give the domain once");
+    }
     EYEBOX_ASSIGN_OR_RETURN(limit, Triplet(text));
+    return absl::OkStatus();
+  }
+
+  // Resolve's own way to write a domain that is the same for all channels.
+  absl::Status InputRange(std::string_view text) {
+    domain_line_ = line_;
+    EYEBOX_ASSIGN_OR_RETURN(const double low, Number(NextWord(text)));
+    EYEBOX_ASSIGN_OR_RETURN(const double high, Number(NextWord(text)));
+    if (!Trim(text).empty() || seen_.contains("DOMAIN_MIN") || seen_.contains("DOMAIN_MAX")) {
+      return Refuse("LUT_3D_INPUT_RANGE holds more than two numbers or stands beside a DOMAIN",
+                    "give the domain once");
+    }
+    cube_.domain_min.fill(low);
+    cube_.domain_max.fill(high);
     return absl::OkStatus();
   }
 

@@ -39,6 +39,14 @@ TEST(CubeParserTest, LinesMayEndAsOnWindowsAndTheLastNotAtAll) {
   EXPECT_EQ(ParseCube(text, "a")->entries, ParseCube(windows, "b")->entries);
 }
 
+TEST(CubeParserTest, ResolveMayGiveOneRangeForAllChannels) {
+  const auto cube =
+      ParseCube(std::string("LUT_3D_SIZE 2\nLUT_3D_INPUT_RANGE -1.0 4.0\n") + kEight, "a");
+  ASSERT_TRUE(cube.ok()) << cube.status();
+  EXPECT_THAT(cube->domain_min, ElementsAre(-1, -1, -1));
+  EXPECT_THAT(cube->domain_max, ElementsAre(4, 4, 4));
+}
+
 TEST(CubeParserTest, NumbersAreKeptAsFloat32) {
   const auto cube = ParseCube(
       "LUT_3D_SIZE 2\n0.1 1e-3 5.5\n0 0 0\n0 0 0\n0 0 0\n0 0 0\n0 0 0\n0 0 0\n0 0 0\n", "a");
@@ -79,7 +87,11 @@ TEST(CubeParserTest, EachFaultIsNamedWithItsLine) {
       {"TITLE Untitled\n" + size, "f.cube:1", "double quotes"},
       {"TITLE \"\n" + size, "f.cube:1", "double quotes"},
       {"\xEF\xBB\xBFTITLE \"x\"\n", "f.cube:1", "no keyword"},
-      {"LUT_3D_INPUT_RANGE 0 1\n", "f.cube:1", "no keyword"},
+      {"LUT_3D_INPUT_RANGE 0\n", "f.cube:1", "finite"},
+      {"LUT_3D_INPUT_RANGE 0 1 2\n", "f.cube:1", "two numbers"},
+      {"LUT_3D_INPUT_RANGE 1 0\n" + size + kEight, "f.cube:1", "domain is empty"},
+      {"DOMAIN_MIN 0 0 0\nLUT_3D_INPUT_RANGE 0 1\n", "f.cube:2", "once"},
+      {"LUT_3D_INPUT_RANGE 0 1\nDOMAIN_MIN 0 0 0\n", "f.cube:2", "once"},
       {"DOMAIN_MIN 0 0\n", "f.cube:1", "three numbers"},
       {size + "DOMAIN_MAX 1 0 1\n" + kEight, "f.cube:2", "domain is empty"},
       {"DOMAIN_MIN 2 2 2\n" + size + "DOMAIN_MAX 1 1 1\n" + kEight, "f.cube:3", "domain is empty"},

@@ -55,7 +55,9 @@ absl::StatusOr<std::vector<Exposure>> OrderBracket(std::span<const Stack> stacks
                       "its size differs from the light's",
                       "record both with one region of interest");
     }
-    bracket.push_back({&stack, dark, SaturationMask(stack, options.saturation_dilation_px)});
+    bracket.push_back(
+        {&stack, dark,
+         SaturationMask(stack, options.saturation_dilation, options.colour_period_px)});
   }
   std::sort(bracket.begin(), bracket.end(), [](const Exposure& a, const Exposure& b) {
     return a.light->setting.exposure_s < b.light->setting.exposure_s;

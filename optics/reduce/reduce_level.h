@@ -20,11 +20,12 @@
 namespace eyebox::optics {
 
 struct ReduceOptions {
-  int saturation_dilation_px = 1;  // blooming spoils neighbours; 1 is 3 x 3, 0 is none
-  double rail_guard_sigmas = 3;    // expected counts this close to a rail are masked
-  int smoothing_radius = 2;        // of the expected signal; 2 is 5 x 5 same-colour neighbours
-  int colour_period_px = 2;        // distance of same-colour neighbours; 1 for a grey sensor
-  double flat_minimum = 0.05;      // of the flat's median; below, the flat is unusable
+  // Blooming spoils neighbours: 1 masks the 3 x 3 same-colour neighbours, 0 none.
+  int saturation_dilation = 1;
+  double rail_guard_sigmas = 3;  // expected counts this close to a rail are masked
+  int smoothing_radius = 2;      // of the expected signal; 2 is 5 x 5 same-colour neighbours
+  int colour_period_px = 2;      // distance of same-colour neighbours; 1 for a grey sensor
+  double flat_minimum = 0.05;    // of the flat's median; below, the flat is unusable
 };
 
 // A rate image in DN/s, before flat and scale.

@@ -18,7 +18,7 @@ void OrShifted(std::span<const uint8_t> source, int shift, std::span<uint8_t> ta
 
 }  // namespace
 
-Image<uint8_t> SaturationMask(const Stack& stack, int dilation_px) {
+Image<uint8_t> SaturationMask(const Stack& stack, int dilation, int step_px) {
   const ImageSize size = stack.size();
   Image<uint8_t> along_rows(size);
   std::vector<uint8_t> clipped(size.width_px);
@@ -26,13 +26,14 @@ Image<uint8_t> SaturationMask(const Stack& stack, int dilation_px) {
     const auto counts = stack.saturated_count.row(y);
     std::transform(counts.begin(), counts.end(), clipped.begin(),
                    [](uint8_t n) { return static_cast<uint8_t>(n > 0 ? kSaturated : 0); });
-    for (int dx = -dilation_px; dx <= dilation_px; ++dx) OrShifted(clipped, dx, along_rows.row(y));
+    for (int n = -dilation; n <= dilation; ++n) OrShifted(clipped, n * step_px, along_rows.row(y));
   }
-  if (dilation_px == 0) return along_rows;
+  if (dilation == 0) return along_rows;
   Image<uint8_t> mask(size);
   for (int y = 0; y < size.height_px; ++y) {
-    const int last = std::min(size.height_px - 1, y + dilation_px);
-    for (int row = std::max(0, y - dilation_px); row <= last; ++row) {
+    for (int n = -dilation; n <= dilation; ++n) {
+      const int row = y + n * step_px;
+      if (row < 0 || row >= size.height_px) continue;
       OrShifted(along_rows.row(row), 0, mask.row(y));
     }
   }

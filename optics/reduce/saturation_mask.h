@@ -9,9 +9,12 @@
 
 namespace eyebox::optics {
 
-// kSaturated where any frame reached saturation, there or within `dilation_px` pixels in x and y
-// (blooming spills into neighbours); 0 elsewhere. [height, width].
-Image<uint8_t> SaturationMask(const Stack& stack, int dilation_px);
+// kSaturated where any frame reached saturation, there or within `dilation` steps of `step_px`
+// pixels in x and y (blooming spills into neighbours); 0 elsewhere. [height, width]. A step of 1
+// suits a grey sensor. On a colour mosaic a step of 2 reaches the neighbours of the same colour:
+// under narrow-band light one colour saturates long before the pixels between, whose counts would
+// all be lost.
+Image<uint8_t> SaturationMask(const Stack& stack, int dilation, int step_px);
 
 }  // namespace eyebox::optics
 

@@ -139,7 +139,7 @@ std::vector<PhotonTransferPoint> PhotonTransfer::Points() const {
 absl::StatusOr<NoiseModel> PhotonTransfer::Fit() {
   EndCapture();
   const VarianceLine line =
-      saw_light_pair_ ? FitVarianceLine(Points()) : FitLowerVarianceLine(Points());
+      saw_light_pair_ ? FitVarianceLine(Points()) : FitTexturedVarianceLine(Points());
   const bool determined = line.slope_sigma_dn > 0 && line.slope_dn > 0 &&
                           line.slope_sigma_dn <= kWorstGainSigma * line.slope_dn;
   if (!determined) {

@@ -8,19 +8,19 @@
 namespace eyebox::optics {
 namespace {
 
-constexpr int kTilePixels = 16;  // of one colour, along a side
+constexpr int kTilePixels = 8;  // of one colour, along a side
 constexpr size_t kTilesPerBin = 4096;
 constexpr size_t kFewestTiles = 4;
-constexpr double kFewestDifferences = 100;
-// Differences of a chain share pixels: n of them hold the information of about 2 n / 3.
-constexpr double kChainEfficiency = 2.0 / 3;
+constexpr double kFewestDifferences = 25;
+// Mixed differences share pixels: their correlations 1/2 (four neighbours) and 1/4 (four more)
+// leave n of them the information of n / (1 + 4/4 + 4/16).
+constexpr double kSharingEfficiency = 4.0 / 9;
 constexpr double kMedianEfficiency = 0.64;  // of the median against the mean
 
 }  // namespace
 
 struct TileVariances::Tile {
   double differences = 0;
-  double difference_sum = 0;
   double difference_squares = 0;
   double count_sum_dn = 0;
   double pixels = 0;
@@ -41,17 +41,21 @@ void TileVariances::Add(const FrameView& frame, double bias_dn, double saturatio
     Tile tile;
     tile.bias_dn = bias_dn;
     for (int y = top; y < std::min(height, top + side); y += period) {
-      const size_t row = static_cast<size_t>(y) * width;
       for (int x = left; x < std::min(width, left + side); x += period) {
-        const double dn = frame.pixels_dn[row + x];
-        if (!usable(row + x)) continue;
+        const size_t here = static_cast<size_t>(y) * width + x;
+        const double dn = frame.pixels_dn[here];
+        if (!usable(here)) continue;
         tile.saturated |= dn >= saturation_dn;
         tile.count_sum_dn += dn;
         ++tile.pixels;
-        if (x == left || !usable(row + x - period)) continue;
-        const double difference = dn - frame.pixels_dn[row + x - period];
+        if (x == left || y == top) continue;
+        const size_t before = here - period;
+        const size_t above = here - static_cast<size_t>(period) * width;
+        const size_t both = above - period;
+        if (!usable(before) || !usable(above) || !usable(both)) continue;
+        const double difference =
+            dn - frame.pixels_dn[before] - frame.pixels_dn[above] + frame.pixels_dn[both];
         ++tile.differences;
-        tile.difference_sum += difference;
         tile.difference_squares += difference * difference;
       }
     }
@@ -68,9 +72,7 @@ void TileVariances::Add(const FrameView& frame, double bias_dn, double saturatio
 
 void TileVariances::AddTile(const Tile& tile) {
   if (tile.saturated || tile.differences < kFewestDifferences) return;
-  const double n = tile.differences;
-  const double variance =
-      0.5 * (tile.difference_squares - tile.difference_sum * tile.difference_sum / n) / (n - 1);
+  const double variance = tile.difference_squares / (4 * tile.differences);
   const double mean_dn = tile.count_sum_dn / tile.pixels;
   if (mean_dn <= 1 || mean_dn * mean_dn <= 9 * variance) return;  // clipped at 0 DN
   const double signal_dn = mean_dn - tile.bias_dn;
@@ -80,7 +82,7 @@ void TileVariances::AddTile(const Tile& tile) {
   if (bin.variances_dn2.size() >= kTilesPerBin) return;
   bin.variances_dn2.push_back(static_cast<float>(variance));
   bin.signal_sum_dn += signal_dn;
-  bin.freedom_sum += n * kChainEfficiency;
+  bin.freedom_sum += tile.differences * kSharingEfficiency;
 }
 
 std::vector<PhotonTransferPoint> TileVariances::Points() const {

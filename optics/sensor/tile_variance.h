@@ -11,10 +11,12 @@
 
 namespace eyebox::optics {
 
-// Collects, per tile of 16 x 16 same-colour pixels, half the variance of the difference of
-// horizontal neighbours (a linear gradient cancels), by the tile's mean signal. The median over the
-// tiles of a bin ignores the few that hold an edge. It still contains the sensor's nonuniformity
-// and fine texture: an upper bound of the noise. Memory: at most 4096 tiles a bin.
+// Collects, per tile of 8 x 8 same-colour pixels, a quarter of the mean square of the mixed second
+// differences of neighbours (a gradient in any direction and an edge along a row or a column
+// cancel), by the tile's mean signal. The median over the tiles of a bin ignores the few that hold
+// an edge. It still contains the sensor's nonuniformity and fine texture, whose variance grows with
+// the square of the signal: FitTexturedVarianceLine tells them apart. Memory: at most 4096 tiles a
+// bin.
 class TileVariances {
  public:
   // Bins of equal width from 0 to `upper_signal_dn`; same-colour neighbours are

@@ -1,5 +1,7 @@
 #include "optics/sensor/variance_line.h"
 
+#include <Eigen/Dense>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,17 +16,17 @@ constexpr double kQuantisationDn2 = 1.0 / 12;  // no measured variance of counts
 constexpr double kTrustedSigmas = 2.5;
 constexpr int kIterations = 30;
 
-struct Sums {
-  double w = 0, ws = 0, wss = 0, wv = 0, wsv = 0;
-};
+double ValueAt(const VarianceLine& line, double signal_dn) {
+  return line.intercept_dn2 + signal_dn * (line.slope_dn + signal_dn * line.texture);
+}
 
 double PredictedVariance(const VarianceLine& line, double signal_dn) {
-  return std::max(line.intercept_dn2 + line.slope_dn * signal_dn, kQuantisationDn2);
+  return std::max(ValueAt(line, signal_dn), kQuantisationDn2);
 }
 
 double StandardScore(const VarianceLine& line, const PhotonTransferPoint& point) {
   const double predicted = PredictedVariance(line, point.signal_dn);
-  return (point.variance_dn2 - line.intercept_dn2 - line.slope_dn * point.signal_dn) /
+  return (point.variance_dn2 - ValueAt(line, point.signal_dn)) /
          (predicted * std::sqrt(2 / point.degrees_of_freedom));
 }
 
@@ -35,15 +37,19 @@ double Trust(double score, double scatter) {
   return excess > 1 ? 1 / (excess * excess * excess * excess) : 1;
 }
 
+// Of the points below the line: texture only ever lifts a point, so that those above tell nothing.
 double MedianScatter(std::span<const PhotonTransferPoint> points, const VarianceLine& line) {
   std::vector<float> scores;
   for (const PhotonTransferPoint& point : points) {
-    scores.push_back(static_cast<float>(std::abs(StandardScore(line, point))));
+    const auto score = static_cast<float>(StandardScore(line, point));
+    if (score <= 0) scores.push_back(-score);
   }
+  if (scores.empty()) return 1;
   return std::max(1.4826 * Median(std::move(scores)), 1.0);
 }
 
-// From the median of the points' slopes: a start that a minority of textured points cannot lift.
+// From the lower quartile of the points' slopes: a start that textured points cannot lift unless
+// they are three quarters of all.
 VarianceLine StartingLine(std::span<const PhotonTransferPoint> points) {
   const auto lowest =
       std::min_element(points.begin(), points.end(),
@@ -56,34 +62,48 @@ VarianceLine StartingLine(std::span<const PhotonTransferPoint> points) {
     if (run > 0) slopes.push_back((point.variance_dn2 - lowest->variance_dn2) / run);
   }
   if (slopes.empty()) return line;
-  const auto middle = slopes.begin() + static_cast<std::ptrdiff_t>(slopes.size() / 2);
-  std::nth_element(slopes.begin(), middle, slopes.end());
-  line.slope_dn = std::max(*middle, 0.0);
+  const auto quartile = slopes.begin() + static_cast<std::ptrdiff_t>(slopes.size() / 4);
+  std::nth_element(slopes.begin(), quartile, slopes.end());
+  line.slope_dn = std::max(*quartile, 0.0);
   return line;
 }
 
-bool Improve(std::span<const PhotonTransferPoint> points, double scatter, VarianceLine& line) {
-  Sums s;
+// One step of weighted least squares for the first `terms` of intercept, slope and texture. False
+// if the points do not determine them.
+bool Improve(std::span<const PhotonTransferPoint> points, double scatter, int terms,
+             VarianceLine& line) {
+  // In units of the largest signal, so that the powers are of one size.
+  double unit_dn = 0;
+  for (const PhotonTransferPoint& point : points) unit_dn = std::max(unit_dn, point.signal_dn);
+  if (!(unit_dn > 0)) return false;
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(terms, terms);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(terms);
   for (const PhotonTransferPoint& point : points) {
     const double predicted = PredictedVariance(line, point.signal_dn);
     const double w = Trust(StandardScore(line, point), scatter) * point.degrees_of_freedom /
                      (2 * predicted * predicted);
-    s.w += w;
-    s.ws += w * point.signal_dn;
-    s.wss += w * point.signal_dn * point.signal_dn;
-    s.wv += w * point.variance_dn2;
-    s.wsv += w * point.signal_dn * point.variance_dn2;
+    const double s = point.signal_dn / unit_dn;
+    const Eigen::VectorXd row = Eigen::Vector3d(1, s, s * s).head(terms);
+    normal += w * row * row.transpose();
+    right += w * point.variance_dn2 * row;
   }
-  const double determinant = s.w * s.wss - s.ws * s.ws;
-  if (!(determinant > 1e-12 * s.w * s.wss)) return false;
-  line.slope_dn = (s.w * s.wsv - s.ws * s.wv) / determinant;
-  line.intercept_dn2 = (s.wss * s.wv - s.ws * s.wsv) / determinant;
-  line.slope_sigma_dn = std::sqrt(s.w / determinant);
-  line.intercept_sigma_dn2 = std::sqrt(s.wss / determinant);
+  const Eigen::VectorXd scale = normal.diagonal().cwiseSqrt();
+  const Eigen::MatrixXd correlation =
+      scale.cwiseInverse().asDiagonal() * normal * scale.cwiseInverse().asDiagonal();
+  const Eigen::FullPivLU<Eigen::MatrixXd> factors(correlation);
+  if (!(factors.determinant() > 1e-12)) return false;
+  const Eigen::VectorXd solution = factors.solve(right.cwiseQuotient(scale)).cwiseQuotient(scale);
+  const Eigen::VectorXd sigma = factors.inverse().diagonal().cwiseSqrt().cwiseQuotient(scale);
+  line.intercept_dn2 = solution[0];
+  line.slope_dn = solution[1] / unit_dn;
+  line.texture = terms > 2 ? solution[2] / (unit_dn * unit_dn) : 0;
+  line.intercept_sigma_dn2 = sigma[0];
+  line.slope_sigma_dn = sigma[1] / unit_dn;
   return true;
 }
 
-void ScaleByChi2(std::span<const PhotonTransferPoint> points, double scatter, VarianceLine& line) {
+void ScaleByChi2(std::span<const PhotonTransferPoint> points, double scatter, int terms,
+                 VarianceLine& line) {
   double chi2 = 0;
   double trusted = 0;
   for (const PhotonTransferPoint& point : points) {
@@ -92,32 +112,35 @@ void ScaleByChi2(std::span<const PhotonTransferPoint> points, double scatter, Va
     chi2 += trust * score * score;
     trusted += trust;
   }
-  line.reduced_chi2 = trusted > 2 ? chi2 / (trusted - 2) : 0;
+  line.reduced_chi2 = trusted > terms ? chi2 / (trusted - terms) : 0;
   const double scale = std::sqrt(std::max(line.reduced_chi2, 1.0));
   line.slope_sigma_dn *= scale;
   line.intercept_sigma_dn2 *= scale;
 }
 
 template <typename ScatterOf>
-VarianceLine Iterate(std::span<const PhotonTransferPoint> points, const ScatterOf& scatter_of) {
-  if (points.size() < 2) return {};
+VarianceLine Iterate(std::span<const PhotonTransferPoint> points, int terms,
+                     const ScatterOf& scatter_of) {
+  if (points.size() < static_cast<size_t>(terms)) return {};
   VarianceLine line = StartingLine(points);
   for (int i = 0; i < kIterations; ++i) {
-    if (!Improve(points, scatter_of(line), line)) return {};
+    if (!Improve(points, scatter_of(line), terms, line)) return {};
   }
-  ScaleByChi2(points, scatter_of(line), line);
+  ScaleByChi2(points, scatter_of(line), terms, line);
   return line;
 }
 
 }  // namespace
 
 VarianceLine FitVarianceLine(std::span<const PhotonTransferPoint> points) {
-  return Iterate(points,
+  return Iterate(points, 2,
                  [](const VarianceLine&) { return std::numeric_limits<double>::infinity(); });
 }
 
-VarianceLine FitLowerVarianceLine(std::span<const PhotonTransferPoint> points) {
-  return Iterate(points, [&](const VarianceLine& line) { return MedianScatter(points, line); });
+VarianceLine FitTexturedVarianceLine(std::span<const PhotonTransferPoint> points) {
+  const auto scatter_of = [&](const VarianceLine& line) { return MedianScatter(points, line); };
+  const VarianceLine textured = Iterate(points, 3, scatter_of);
+  return textured.texture > 0 ? textured : Iterate(points, 2, scatter_of);
 }
 
 }  // namespace eyebox::optics

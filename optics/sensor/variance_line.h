@@ -18,6 +18,7 @@ struct VarianceLine {
   double slope_dn = 0;  // K, DN/e
   double intercept_sigma_dn2 = 0;
   double slope_sigma_dn = 0;  // 0 if the points do not determine a line
+  double texture = 0;         // t^2, relative variance; 0 unless fitted
   double reduced_chi2 = 0;    // above 1 the sigmas have been scaled by its root
 };
 
@@ -26,9 +27,11 @@ struct VarianceLine {
 // zero.
 VarianceLine FitVarianceLine(std::span<const PhotonTransferPoint> points);
 
-// The same for points that texture may lift: those far above the line, on the scale of the points'
-// own median scatter, lose their weight.
-VarianceLine FitLowerVarianceLine(std::span<const PhotonTransferPoint> points);
+// The same for points that hold texture as well: variance = intercept + K signal + t^2 signal^2, t
+// the relative rms of texture and of the pixels' unequal response; t is 0 where the points do not
+// ask for it. Points far above the curve, on the scale of the points' own median scatter, lose
+// their weight.
+VarianceLine FitTexturedVarianceLine(std::span<const PhotonTransferPoint> points);
 
 }  // namespace eyebox::optics
 

@@ -82,9 +82,18 @@ TEST(FrameStackerTest, SumOfManyFullFramesDoesNotOverflow) {
 TEST(SaturationMaskTest, SpreadsToNeighboursWithinTheImage) {
   Stack stack{{0.1, 0}, kTwelveBits, 1, Image<float>({4, 3}), Image<uint8_t>({4, 3})};
   stack.saturated_count.at(3, 0) = 1;
-  EXPECT_THAT(SaturationMask(stack, 0).pixels(), ElementsAre(0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0));
-  EXPECT_THAT(SaturationMask(stack, 1).pixels(), ElementsAre(0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 0, 0));
-  EXPECT_THAT(SaturationMask(stack, 9).pixels(), ::testing::Each(kSaturated));
+  EXPECT_THAT(SaturationMask(stack, 0, 1).pixels(),
+              ElementsAre(0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0));
+  EXPECT_THAT(SaturationMask(stack, 1, 1).pixels(),
+              ElementsAre(0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 0, 0));
+  EXPECT_THAT(SaturationMask(stack, 9, 1).pixels(), ::testing::Each(kSaturated));
+}
+
+TEST(SaturationMaskTest, OnAMosaicTheOtherColoursKeepTheirCounts) {
+  Stack stack{{0.1, 0}, kTwelveBits, 1, Image<float>({4, 3}), Image<uint8_t>({4, 3})};
+  stack.saturated_count.at(3, 0) = 1;
+  EXPECT_THAT(SaturationMask(stack, 1, 2).pixels(),
+              ElementsAre(0, 1, 0, 1, 0, 0, 0, 0, 0, 1, 0, 1));
 }
 
 }  // namespace

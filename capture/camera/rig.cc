@@ -7,6 +7,7 @@
 #include "capture/camera/aravis/aravis_rig.h"
 #include "capture/camera/replay/replay_rig.h"
 #include "capture/camera/sim/sim_rig.h"
+#include "capture/camera/v4l2/v4l2_camera.h"
 
 namespace eyebox::capture {
 namespace {
@@ -22,7 +23,7 @@ struct Scheme {
 };
 
 constexpr std::array kSchemes = {Scheme{"sim", OpenSim}, Scheme{"replay", OpenReplayRig},
-                                 Scheme{"aravis", OpenAravisRig}};
+                                 Scheme{"aravis", OpenAravisRig}, Scheme{"v4l2", OpenV4l2Rig}};
 
 }  // namespace
 

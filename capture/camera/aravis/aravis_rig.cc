@@ -7,6 +7,7 @@
 #include "capture/camera/aravis/acquisition.h"
 #include "capture/camera/aravis/command_thread.h"
 #include "capture/camera/camera_state.h"
+#include "capture/camera/manual_presenter.h"
 
 namespace eyebox::capture {
 namespace {
@@ -67,11 +68,6 @@ class AravisCamera final : public Camera {
   std::unique_ptr<Acquisition> acquisition_;
   CameraState state_;
   bool running_ = false;
-};
-
-class ManualPresenter final : public StimulusPresenter {
- public:
-  absl::Status Present(const CaptureSpec&) override { return absl::OkStatus(); }
 };
 
 }  // namespace

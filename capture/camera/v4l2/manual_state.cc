@@ -38,6 +38,7 @@ constexpr std::array kRules = {
     Rule{V4L2_CID_BAND_STOP_FILTER, Wanted::kValue, 0},
     Rule{V4L2_CID_COLORFX, Wanted::kValue, V4L2_COLORFX_NONE},
     Rule{V4L2_CID_SHARPNESS, Wanted::kMinimum},
+    Rule{V4L2_CID_BLACK_LEVEL, Wanted::kDefault},
     Rule{V4L2_CID_BRIGHTNESS, Wanted::kDefault},
     Rule{V4L2_CID_CONTRAST, Wanted::kDefault},
     Rule{V4L2_CID_SATURATION, Wanted::kDefault},
@@ -92,30 +93,6 @@ absl::StatusOr<std::optional<HeldControl>> HoldGamma(const VideoNode& node,
   return Hold(node, *control, linear);
 }
 
-absl::StatusOr<std::optional<HeldControl>> HoldBlackLevel(const VideoNode& node,
-                                                          const V4l2Options& options) {
-  if (!options.black_level) return std::nullopt;
-  EYEBOX_ASSIGN_OR_RETURN(auto control, FindControl(node, V4L2_CID_BLACK_LEVEL));
-  if (!control) {
-    EYEBOX_ASSIGN_OR_RETURN(control, FindControl(node, V4L2_CID_BRIGHTNESS));
-  }
-  if (!control) {
-    return BadInput(options.uri + " black_level", "is given, but the camera has no such control",
-                    "leave it out");
-  }
-  const int32_t value = *options.black_level;
-  if (value >= control->minimum && value <= control->maximum) return Hold(node, *control, value);
-  return BadInput(options.uri + " black_level", "is " + std::to_string(value),
-                  "'" + control->name + "' takes " + std::to_string(control->minimum) + " to " +
-                      std::to_string(control->maximum));
-}
-
-// A black level may stand for the brightness that a rule has set before.
-void Replace(std::vector<HeldControl>& held, const HeldControl& last) {
-  std::erase_if(held, [&](const HeldControl& one) { return one.control.id == last.control.id; });
-  held.push_back(last);
-}
-
 }  // namespace
 
 absl::StatusOr<std::vector<HeldControl>> MakeManual(const VideoNode& node,
@@ -130,8 +107,6 @@ absl::StatusOr<std::vector<HeldControl>> MakeManual(const VideoNode& node,
   }
   EYEBOX_ASSIGN_OR_RETURN(const auto gamma, HoldGamma(node, options));
   if (gamma) held.push_back(*gamma);
-  EYEBOX_ASSIGN_OR_RETURN(const auto black_level, HoldBlackLevel(node, options));
-  if (black_level) Replace(held, *black_level);
   return held;
 }
 

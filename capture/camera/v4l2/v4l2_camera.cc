@@ -8,6 +8,7 @@
 #include "capture/base/status.h"
 #include "capture/base/unpack.h"
 #include "capture/camera/camera_state.h"
+#include "capture/camera/manual_presenter.h"
 #include "capture/camera/v4l2/frame_gate.h"
 #include "capture/camera/v4l2/v4l2_uri.h"
 #include "capture/camera/v4l2/video_controls.h"
@@ -31,7 +32,25 @@ struct Device {
   FrameIntervals intervals;
   Control exposure;
   std::optional<Control> gain;
+  std::optional<Control> black_level;
 };
+
+// The name that GenICam gives to such counts; how V4L2 packs them does not show in a frame.
+std::string PixelFormatName(const V4l2Format& pixel) {
+  switch (pixel.mosaic) {
+    case BayerMosaic::kNone:
+      break;
+    case BayerMosaic::kGrbg:
+      return "BayerGR" + std::to_string(pixel.significant_bits);
+    case BayerMosaic::kRggb:
+      return "BayerRG" + std::to_string(pixel.significant_bits);
+    case BayerMosaic::kGbrg:
+      return "BayerGB" + std::to_string(pixel.significant_bits);
+    case BayerMosaic::kBggr:
+      return "BayerBG" + std::to_string(pixel.significant_bits);
+  }
+  return "Mono" + std::to_string(pixel.significant_bits);
+}
 
 absl::StatusOr<Device> Examine(std::string_view uri, VideoSyscalls* syscalls) {
   Device device;
@@ -42,6 +61,7 @@ absl::StatusOr<Device> Examine(std::string_view uri, VideoSyscalls* syscalls) {
   EYEBOX_ASSIGN_OR_RETURN(device.intervals, OfferedIntervals(node, device.format));
   EYEBOX_ASSIGN_OR_RETURN(device.exposure, FindExposureControl(node));
   EYEBOX_ASSIGN_OR_RETURN(device.gain, FindGainControl(node));
+  EYEBOX_ASSIGN_OR_RETURN(device.black_level, FindBlackLevelControl(node));
   return device;
 }
 
@@ -57,6 +77,11 @@ CameraInfo InfoOf(const Device& device) {
   if (device.gain && device.options.gain_db_per_step) {
     info.gain_max_db = (static_cast<double>(device.gain->maximum) - device.gain->minimum) *
                        *device.options.gain_db_per_step;
+  }
+  info.pixel_format = PixelFormatName(device.format.pixel);
+  if (device.black_level) {
+    info.black_level_min = device.black_level->minimum;
+    info.black_level_max = device.black_level->maximum;
   }
   return info;
 }
@@ -119,7 +144,7 @@ class V4l2Camera final : public Camera {
     EYEBOX_ASSIGN_OR_RETURN(held_, MakeManual(node, device_.options));
     EYEBOX_ASSIGN_OR_RETURN(interval_s_,
                             SetFrameInterval(node, device_.intervals, settings.exposure_s));
-    CameraSettings set;
+    CameraSettings set = settings;
     const auto units = static_cast<int32_t>(std::lround(settings.exposure_s / kExposureUnitS));
     EYEBOX_ASSIGN_OR_RETURN(const int32_t exposure, Hold(device_.exposure, units));
     set.exposure_s = exposure * kExposureUnitS;
@@ -129,6 +154,13 @@ class V4l2Camera final : public Camera {
       const auto steps = static_cast<int32_t>(std::lround(settings.gain_db / step_db));
       EYEBOX_ASSIGN_OR_RETURN(const int32_t value, Hold(gain, gain.minimum + steps));
       set.gain_db = (value - gain.minimum) * step_db;
+    }
+    if (settings.black_level && !device_.black_level) {
+      return BadInput(info_.uri + " black_level", "is given", "this camera has no such control");
+    }
+    if (settings.black_level) {
+      const auto value = static_cast<int32_t>(std::lround(*settings.black_level));
+      EYEBOX_ASSIGN_OR_RETURN(set.black_level, Hold(*device_.black_level, value));
     }
     return set;
   }
@@ -181,24 +213,20 @@ class V4l2Camera final : public Camera {
   absl::StatusOr<std::optional<Frame>> ToFrame(const VideoBuffer& buffer,
                                                const AdmittedFrame& admitted) const {
     const VideoFormat& format = device_.format;
+    Frame frame;
+    frame.metadata = MetadataOf(buffer, admitted);
+    frame.view.size = format.size;
+    if (buffer.error || buffer.bytes.size() < format.image_bytes) {
+      frame.metadata.status = BufferStatus::kDeviceError;
+      return frame;
+    }
     const size_t pixels = format.size.PixelCount();
     auto counts_dn = std::make_shared_for_overwrite<uint16_t[]>(pixels);
     const std::span<uint16_t> view(counts_dn.get(), pixels);
-    const bool whole = buffer.bytes.size() >= format.image_bytes;
-    if (whole) {
-      EYEBOX_RETURN_IF_ERROR(
-          Unpack(format.pixel.packing, buffer.bytes, format.size, format.stride_bytes, view));
-    } else {
-      std::ranges::fill(view, uint16_t{0});
-    }
-    Frame frame;
-    frame.metadata = MetadataOf(buffer, admitted);
-    if (buffer.error || !whole) {
-      frame.metadata.status = BufferStatus::kDeviceError;
-    } else {
-      EYEBOX_RETURN_IF_ERROR(CheckDepth(view));
-    }
-    frame.view = {.pixels_dn = view, .size = format.size};
+    EYEBOX_RETURN_IF_ERROR(
+        Unpack(format.pixel.packing, buffer.bytes, format.size, format.stride_bytes, view));
+    EYEBOX_RETURN_IF_ERROR(CheckDepth(view));
+    frame.view.pixels_dn = view;
     frame.owner = std::move(counts_dn);
     return frame;
   }
@@ -242,6 +270,14 @@ absl::StatusOr<std::unique_ptr<Camera>> OpenV4l2Camera(std::string_view uri, con
                                                        VideoSyscalls* syscalls) {
   EYEBOX_ASSIGN_OR_RETURN(Device device, Examine(uri, syscalls));
   return std::make_unique<V4l2Camera>(std::move(device), clock);
+}
+
+absl::StatusOr<Rig> OpenV4l2Rig(const RigConfig& config, const Clock* clock) {
+  Rig rig;
+  rig.config = config;
+  EYEBOX_ASSIGN_OR_RETURN(rig.camera, OpenV4l2Camera(config.camera_uri, clock));
+  rig.presenter = std::make_unique<ManualPresenter>();
+  return rig;
 }
 
 }  // namespace eyebox::capture

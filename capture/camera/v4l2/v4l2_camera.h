@@ -22,16 +22,21 @@ namespace eyebox::capture {
 // The device runs freely; a Trigger() marks a moment, and the next frame that began after it
 // answers. Frames that began less than a frame interval after the last write of a setting or the
 // start of the stream are passed over. camera_frame_id counts the frames that were asked for, from
-// 1 at every Start(); a gap is such a frame that was lost (see frame_gate.h).
+// 1 at every Start(); a gap is such a frame that was lost (see frame_gate.h). A spoilt frame comes
+// without pixels.
 // Frame intervals are as short as the exposure allows. V4L2 tells neither exposure nor gain of a
 // single frame, so that these stay empty in its metadata; Configure() returns what reads back.
-// NextFrame() also fails with Unavailable when a setting changes while frames are taken, or when
-// counts exceed what the pixel format allows.
-// Errors: InvalidArgument (URI, format), NotFound, PermissionDenied, ResourceExhausted (another
-// program streams), Unavailable (the driver alters what was asked, keeps something automatic, has
-// no exposure time or tells no frame interval).
+// The black level is the control of that name or the brightness, in its own unit; its default where
+// none is asked for. NextFrame() also fails with Unavailable when a setting changes while frames
+// are taken, or when counts exceed what the pixel format allows. Errors: InvalidArgument (URI,
+// format), NotFound, PermissionDenied, ResourceExhausted (another program streams), Unavailable
+// (the driver alters what was asked, keeps something automatic, has no exposure time or tells no
+// frame interval).
 absl::StatusOr<std::unique_ptr<Camera>> OpenV4l2Camera(
     std::string_view uri, const Clock* clock, VideoSyscalls* syscalls = KernelVideoSyscalls());
+
+// The same on config.camera_uri, with a presenter that does nothing.
+absl::StatusOr<Rig> OpenV4l2Rig(const RigConfig& config, const Clock* clock);
 
 struct V4l2Listing {
   std::string uri;

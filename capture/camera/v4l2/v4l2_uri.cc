@@ -43,7 +43,6 @@ bool Set(std::string_view key, std::string_view value, V4l2Options& options) {
   }
   if (key == "size") return (options.size_px = ToSize(value)).has_value();
   if (key == "gamma") return (options.gamma = ToNumber<int32_t>(value)).has_value();
-  if (key == "black_level") return (options.black_level = ToNumber<int32_t>(value)).has_value();
   options.gain_db_per_step = ToNumber<double>(value);
   return options.gain_db_per_step && std::isfinite(*options.gain_db_per_step) &&
          *options.gain_db_per_step > 0;
@@ -53,9 +52,8 @@ std::string_view Expected(std::string_view key) {
   if (key == "format") return "give a raw format such as GREY, Y10, Y12, Y16, Y10P, RG12, BYR2";
   if (key == "size") return "give WIDTHxHEIGHT in pixels, for example 1280x800";
   if (key == "gamma") return "give the whole number that means linear for this camera";
-  if (key == "black_level") return "give a whole number in the unit of the camera's control";
   if (key == "gain_db_per_step") return "give a number above 0 from the camera's data sheet";
-  return "known are format, size, gain_db_per_step, gamma and black_level";
+  return "known are format, size, gain_db_per_step and gamma";
 }
 
 }  // namespace

@@ -23,8 +23,6 @@ struct V4l2Options {
   std::optional<double> gain_db_per_step;
   // The value of the gamma control that means linear, where the driver does not define it.
   std::optional<int32_t> gamma;
-  // Value of the black level control (or brightness where there is none), in its own unit.
-  std::optional<int32_t> black_level;
 };
 
 // Errors: InvalidArgument (names the key and what it may be).

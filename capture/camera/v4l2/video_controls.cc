@@ -63,6 +63,12 @@ absl::StatusOr<std::optional<Control>> FindGainControl(const VideoNode& node) {
   return FindControl(node, V4L2_CID_GAIN);
 }
 
+absl::StatusOr<std::optional<Control>> FindBlackLevelControl(const VideoNode& node) {
+  EYEBOX_ASSIGN_OR_RETURN(auto black_level, FindControl(node, V4L2_CID_BLACK_LEVEL));
+  if (black_level) return black_level;
+  return FindControl(node, V4L2_CID_BRIGHTNESS);
+}
+
 void WatchControls(const VideoNode& node, std::span<const HeldControl> held) {
   for (const HeldControl& one : held) {
     v4l2_event_subscription subscription = {};

@@ -43,7 +43,7 @@ absl::StatusOr<int32_t> WriteControl(const VideoNode& node, const Control& contr
 // Switches off everything that the device does by itself, puts what else changes the picture into a
 // known state, reads all of it back and returns it. What the device does not have is passed over.
 // Errors: Unavailable (a control keeps another value: names it), InvalidArgument (a gamma whose
-// linear value is not known, a black level outside its limits or without a control).
+// linear value is not known).
 absl::StatusOr<std::vector<HeldControl>> MakeManual(const VideoNode& node,
                                                     const V4l2Options& options);
 
@@ -51,6 +51,8 @@ absl::StatusOr<std::vector<HeldControl>> MakeManual(const VideoNode& node,
 absl::StatusOr<Control> FindExposureControl(const VideoNode& node);
 // The analogue gain, else the gain; empty where the device has neither.
 absl::StatusOr<std::optional<Control>> FindGainControl(const VideoNode& node);
+// The black level, else the brightness; empty where the device has neither.
+absl::StatusOr<std::optional<Control>> FindBlackLevelControl(const VideoNode& node);
 
 // Asks the driver to tell when one of these changes. A driver without events stays silent.
 void WatchControls(const VideoNode& node, std::span<const HeldControl> held);

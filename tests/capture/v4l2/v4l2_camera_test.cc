@@ -53,6 +53,7 @@ TEST_F(V4l2CameraTest, ChoosesTheDeepestFormatAtItsLargestSize) {
   EXPECT_EQ(camera_->Info().significant_bits, 12);
   EXPECT_EQ(camera_->Info().sensor_size, (ImageSize{.width_px = 6, .height_px = 4}));
   EXPECT_EQ(camera_->Info().model, "Fake camera");
+  EXPECT_EQ(camera_->Info().pixel_format, "Mono12");
 }
 
 TEST_F(V4l2CameraTest, StatesExposureLimitsInSecondsWithinTheLongestFrameInterval) {

@@ -110,14 +110,21 @@ TEST_F(V4l2Controls, KnowTheLinearGammaOfAUsbCamera) {
 }
 
 TEST_F(V4l2Controls, SetABlackLevelWithinItsLimits) {
-  const absl::Status status = Configure("?black_level=-20");
-  ASSERT_TRUE(status.ok()) << status;
+  ASSERT_TRUE(Configure().ok());
+  const auto set = camera_->Configure({.exposure_s = 0.005, .black_level = -20});
+  ASSERT_TRUE(set.ok()) << set.status();
+  EXPECT_EQ(set->black_level, -20);
   EXPECT_EQ(ValueOf(V4L2_CID_BRIGHTNESS), -20);
-  const absl::Status beyond = Configure("?black_level=65");
-  ASSERT_TRUE(absl::IsInvalidArgument(beyond)) << beyond;
-  EXPECT_THAT(std::string(beyond.message()), HasSubstr("-64 to 64"));
+  EXPECT_TRUE(absl::IsInvalidArgument(
+      camera_->Configure({.exposure_s = 0.005, .black_level = 65}).status()));
+}
+
+TEST_F(V4l2Controls, RefuseABlackLevelThatTheyDoNotHave) {
   device_.controls.erase(V4L2_CID_BRIGHTNESS);
-  EXPECT_THAT(std::string(Configure("?black_level=0").message()), HasSubstr("no such control"));
+  ASSERT_TRUE(Configure().ok());
+  const auto set = camera_->Configure({.exposure_s = 0.005, .black_level = 0}).status();
+  ASSERT_TRUE(absl::IsInvalidArgument(set)) << set;
+  EXPECT_THAT(std::string(set.message()), HasSubstr("no such control"));
 }
 
 TEST_F(V4l2Controls, ThatChangeWhileFramesAreTakenEndTheCapture) {

@@ -18,14 +18,13 @@ TEST(V4l2Uri, NamesADeviceAlone) {
 }
 
 TEST(V4l2Uri, TakesEveryOption) {
-  const auto options = ParseV4l2Uri(
-      "v4l2:/dev/video0?format=Y10P&size=1280x800&gain_db_per_step=0.1&gamma=100&black_level=-3");
+  const auto options =
+      ParseV4l2Uri("v4l2:/dev/video0?format=Y10P&size=1280x800&gain_db_per_step=0.1&gamma=100");
   ASSERT_TRUE(options.ok()) << options.status();
   EXPECT_EQ(options->format, "Y10P");
   EXPECT_EQ(options->size_px, (ImageSize{.width_px = 1280, .height_px = 800}));
   EXPECT_EQ(options->gain_db_per_step, 0.1);
   EXPECT_EQ(options->gamma, 100);
-  EXPECT_EQ(options->black_level, -3);
 }
 
 struct Wrong {

@@ -24,6 +24,11 @@ void PrintBracket(const v1::ReduceResult& result) {
                 exposure.frames(), 100 * exposure.saturated_share());
   }
   for (const v1::ExposurePair& pair : result.exposure_pairs()) {
+    if (!(pair.sigma() > 0)) {
+      std::printf("  %g s to %g s: no signal in common\n", pair.short_exposure_s(),
+                  pair.long_exposure_s());
+      continue;
+    }
     std::printf("  %g s to %g s: signal ratio / time ratio = %.4f +- %.4f over %d pixels\n",
                 pair.short_exposure_s(), pair.long_exposure_s(),
                 pair.signal_ratio_over_time_ratio(), pair.sigma(), pair.pixels());

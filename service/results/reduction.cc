@@ -59,7 +59,7 @@ void AddExposures(const optics::BracketReport& report, v1::ReduceResult& result)
     pair.set_short_exposure_s(check.shorter_s);
     pair.set_long_exposure_s(check.longer_s);
     pair.set_pixels(static_cast<int32_t>(check.pixels));
-    if (check.pixels == 0) continue;
+    if (!std::isfinite(check.ratio)) continue;
     pair.set_signal_ratio_over_time_ratio(check.ratio);
     pair.set_sigma(check.sigma);
   }
@@ -76,10 +76,10 @@ bool IsSaturated(const optics::BracketReport& report, double exposure_s) {
 void AddPairWarnings(const optics::BracketReport& report, v1::ReduceResult& result) {
   for (const optics::ExposurePairCheck& check : report.pairs) {
     char text[200];
-    if (check.pixels == 0) {
+    if (!std::isfinite(check.ratio)) {
       if (IsSaturated(report, check.longer_s)) continue;
       std::snprintf(text, sizeof(text),
-                    "exposures %g s and %g s share no valid pixel; choose them closer together",
+                    "exposures %g s and %g s have no signal in common; choose them closer together",
                     check.shorter_s, check.longer_s);
       result.add_warnings(text);
       continue;

@@ -86,6 +86,7 @@ void UnpackGroups(std::span<const std::byte> packed, uint16_t* counts_dn, size_t
 
 void UnpackRun(PixelPacking packing, std::span<const std::byte> packed, uint16_t* counts_dn,
                size_t count) {
+  if (count == 0) return;
   switch (packing) {
     case PixelPacking::kBytes: {
       const auto* from = reinterpret_cast<const uint8_t*>(packed.data());

@@ -70,10 +70,14 @@ absl::StatusOr<std::optional<Control>> FindBlackLevelControl(const VideoNode& no
 }
 
 void WatchControls(const VideoNode& node, std::span<const HeldControl> held) {
+  v4l2_event_subscription all = {};  // what is pending from before goes with it
+  all.type = V4L2_EVENT_ALL;
+  node.TryIoctl(VIDIOC_UNSUBSCRIBE_EVENT, &all);
   for (const HeldControl& one : held) {
     v4l2_event_subscription subscription = {};
     subscription.type = V4L2_EVENT_CTRL;
     subscription.id = one.control.id;
+    subscription.flags = V4L2_EVENT_SUB_FL_SEND_INITIAL;  // shows what changed before this call
     node.TryIoctl(VIDIOC_SUBSCRIBE_EVENT, &subscription);
   }
 }

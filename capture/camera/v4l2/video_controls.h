@@ -54,7 +54,8 @@ absl::StatusOr<std::optional<Control>> FindGainControl(const VideoNode& node);
 // The black level, else the brightness; empty where the device has neither.
 absl::StatusOr<std::optional<Control>> FindBlackLevelControl(const VideoNode& node);
 
-// Asks the driver to tell when one of these changes. A driver without events stays silent.
+// Asks the driver to tell when one of these has or gets another value. A driver without events
+// stays silent.
 void WatchControls(const VideoNode& node, std::span<const HeldControl> held);
 // Reads the pending events. Errors: Unavailable (a held control changed: names it).
 absl::Status CheckWatched(const VideoNode& node, std::span<const HeldControl> held);

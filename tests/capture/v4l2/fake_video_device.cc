@@ -87,6 +87,9 @@ int FakeVideoDevice::Ioctl(int fd, unsigned long request, void* argument) {
     case VIDIOC_STREAMOFF:
       return Stream(request == VIDIOC_STREAMON);
     case VIDIOC_SUBSCRIBE_EVENT:
+      return Subscribe(As<v4l2_event_subscription>(argument));
+    case VIDIOC_UNSUBSCRIBE_EVENT:
+      events.clear();
       return 0;
     case VIDIOC_DQEVENT:
       return NextEvent(As<v4l2_event>(argument));
@@ -256,6 +259,17 @@ int FakeVideoDevice::Dequeue(v4l2_buffer& buffer) {
   const auto used = static_cast<uint32_t>(ImageBytes());
   uint32_t& bytesused = multiplanar ? buffer.m.planes[0].bytesused : buffer.bytesused;
   bytesused = filled.fault == FakeFault::kCutShort ? used / 2 : used;
+  return 0;
+}
+
+int FakeVideoDevice::Subscribe(const v4l2_event_subscription& subscription) {
+  if ((subscription.flags & V4L2_EVENT_SUB_FL_SEND_INITIAL) == 0) return 0;
+  v4l2_event event = {};
+  event.type = V4L2_EVENT_CTRL;
+  event.id = subscription.id;
+  event.u.ctrl.changes = V4L2_EVENT_CTRL_CH_VALUE;
+  event.u.ctrl.value = controls.at(subscription.id).value;
+  events.push_back(event);
   return 0;
 }
 

@@ -100,6 +100,7 @@ class FakeVideoDevice final : public VideoSyscalls {
   int QueryBuffer(v4l2_buffer& buffer) const;
   int Dequeue(v4l2_buffer& buffer);
   int Stream(bool on);
+  int Subscribe(const v4l2_event_subscription& subscription);
   int NextEvent(v4l2_event& event);
   int64_t IntervalNs() const { return int64_t{interval_ms_} * 1000000; }
   size_t ImageBytes() const { return size_t{row_bytes} * height; }

@@ -127,6 +127,27 @@ TEST_F(V4l2Controls, RefuseABlackLevelThatTheyDoNotHave) {
   EXPECT_THAT(std::string(set.message()), HasSubstr("no such control"));
 }
 
+TEST_F(V4l2Controls, ThatChangedBetweenConfigureAndStartEndTheCapture) {
+  ASSERT_TRUE(Configure().ok());
+  device_.controls[V4L2_CID_AUTOGAIN].value = 1;
+  ASSERT_TRUE(camera_->Start().ok());
+  ASSERT_TRUE(camera_->Trigger().ok());
+  const absl::Status status = camera_->NextFrame(std::chrono::milliseconds(100)).status();
+  ASSERT_TRUE(absl::IsUnavailable(status)) << status;
+  EXPECT_THAT(std::string(status.message()), HasSubstr("'Gain, Automatic'"));
+}
+
+TEST_F(V4l2Controls, ThatAreSetAnewAreNotHeldAgainstTheNextCapture) {
+  ASSERT_TRUE(Configure().ok());
+  ASSERT_TRUE(camera_->Start().ok());
+  ASSERT_TRUE(camera_->Stop().ok());
+  ASSERT_TRUE(camera_->Configure({.exposure_s = 0.008}).ok());
+  ASSERT_TRUE(camera_->Start().ok());
+  ASSERT_TRUE(camera_->Trigger().ok());
+  const auto frame = camera_->NextFrame(std::chrono::milliseconds(100));
+  EXPECT_TRUE(frame.ok()) << frame.status();
+}
+
 TEST_F(V4l2Controls, ThatChangeWhileFramesAreTakenEndTheCapture) {
   ASSERT_TRUE(Configure().ok());
   ASSERT_TRUE(camera_->Start().ok());

@@ -26,7 +26,7 @@ using SteadyClock = std::chrono::steady_clock;
 
 constexpr std::string_view kScheme = "serial:";
 constexpr auto kAnswerTimeout = Milliseconds(250);
-constexpr int kAnswerAttempts = 4;
+constexpr int kAnswerAttempts = 8;
 constexpr int kBootAttempts = 20;  // an UNO that was reset by the opening answers after 2 s
 constexpr int kRoundTripsAtStart = 8;
 constexpr int64_t kRoundTripIntervalNs = 250'000'000;

@@ -33,6 +33,7 @@ constexpr ImageSize kFrameSize = {.width_px = 512, .height_px = 512};
 constexpr size_t kFrameBytes = 512 * 512 * 2;
 constexpr int kFramesPerCapture = 512;
 constexpr int kFramesPerSync = 64;
+constexpr int kTriggersAhead = 8;
 constexpr double kExposureS = 0.001;
 constexpr const char* kCamera = "aravis:fake?region=512x512+0+0&fake_rate_hz=4000&buffers=1024";
 
@@ -88,7 +89,6 @@ absl::Status Record(FrameQueue& queue, RecordingWriter& writer, int frames) {
 
 struct Tally {
   int lost = 0;
-  int incomplete = 0;
   int waited_for_disk = 0;  // triggers that found all buffers waiting for the disk
 };
 
@@ -103,23 +103,36 @@ absl::Status TriggerWhenFree(Camera& camera, Tally& tally) {
   return triggered;
 }
 
+absl::Status TakeFrame(Camera& camera, FrameQueue& queue, std::optional<uint64_t>& previous_id,
+                       Tally& tally) {
+  EYEBOX_ASSIGN_OR_RETURN(Frame frame, camera.NextFrame(std::chrono::seconds(5)));
+  if (frame.metadata.status != BufferStatus::kComplete) {
+    return absl::DataLossError("a frame arrived incomplete");
+  }
+  const uint64_t id = frame.metadata.camera_frame_id;
+  if (previous_id) tally.lost += static_cast<int>(id - *previous_id - 1);
+  previous_id = id;
+  queue.Push(std::move(frame));
+  return absl::OkStatus();
+}
+
+// Triggers by the clock, a few of them ahead of their frames, as a camera allows that exposes while
+// it reads out.
 absl::StatusOr<Tally> Film(Camera& camera, double rate_hz, int frames, FrameQueue& queue) {
   Tally tally;
   std::optional<uint64_t> previous_id;
   const auto start = SteadyClock::now();
-  for (int i = 0; i < frames; ++i) {
-    std::this_thread::sleep_until(
-        start + std::chrono::duration_cast<SteadyClock::duration>(Seconds(i / rate_hz)));
-    EYEBOX_RETURN_IF_ERROR(TriggerWhenFree(camera, tally));
-    EYEBOX_ASSIGN_OR_RETURN(Frame frame, camera.NextFrame(std::chrono::seconds(5)));
-    const uint64_t id = frame.metadata.camera_frame_id;
-    if (previous_id) tally.lost += static_cast<int>(id - *previous_id - 1);
-    previous_id = id;
-    if (frame.metadata.status != BufferStatus::kComplete) {
-      ++tally.incomplete;
-      return absl::DataLossError("a frame arrived incomplete");
+  const auto due = [&](int i) {
+    return start + std::chrono::duration_cast<SteadyClock::duration>(Seconds(i / rate_hz));
+  };
+  for (int triggered = 0, taken = 0; taken < frames; ++taken) {
+    if (triggered == taken) std::this_thread::sleep_until(due(triggered));
+    while (triggered < frames && triggered < taken + kTriggersAhead &&
+           due(triggered) <= SteadyClock::now()) {
+      EYEBOX_RETURN_IF_ERROR(TriggerWhenFree(camera, tally));
+      ++triggered;
     }
-    queue.Push(std::move(frame));
+    EYEBOX_RETURN_IF_ERROR(TakeFrame(camera, queue, previous_id, tally));
   }
   return tally;
 }

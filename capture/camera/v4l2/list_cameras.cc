@@ -32,6 +32,7 @@ std::vector<std::string> NodesIn(const std::filesystem::path& folder) {
   }
   std::ranges::sort(nodes);
   std::vector<std::string> paths;
+  paths.reserve(nodes.size());
   for (auto& [number, path] : nodes) paths.push_back(std::move(path));
   return paths;
 }

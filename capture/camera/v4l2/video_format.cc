@@ -165,8 +165,9 @@ absl::StatusOr<std::vector<V4l2Format>> OfferedFormats(const VideoNode& node) {
     if ((entry.flags & (V4L2_FMT_FLAG_EMULATED | V4L2_FMT_FLAG_COMPRESSED)) != 0) continue;
     if (const V4l2Format* known = FindV4l2Format(entry.pixelformat)) offered.push_back(*known);
   }
-  std::ranges::stable_partition(
-      offered, [](const V4l2Format& format) { return format.mosaic == BayerMosaic::kNone; });
+  std::stable_partition(offered.begin(), offered.end(), [](const V4l2Format& format) {
+    return format.mosaic == BayerMosaic::kNone;
+  });
   return offered;
 }
 

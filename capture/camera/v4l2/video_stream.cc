@@ -35,7 +35,7 @@ absl::Status RequestBuffers(const VideoNode& node, uint32_t& count) {
   request.count = count;
   request.type = node.buffer_type();
   request.memory = V4L2_MEMORY_MMAP;
-  const absl::Status status = node.Ioctl(VIDIOC_REQBUFS, &request, "provide buffers");
+  absl::Status status = node.Ioctl(VIDIOC_REQBUFS, &request, "provide buffers");
   count = request.count;
   return status;
 }

@@ -11,7 +11,7 @@ namespace eyebox::capture::aravis {
 namespace {
 
 constexpr double kReferenceExposureS = 0.01;
-constexpr double kReferenceFill = 0.625;
+constexpr double kReferenceFill = 0.25;
 
 // Rows are copied out of one row that is long enough to start anywhere in the ramp.
 template <typename Count>

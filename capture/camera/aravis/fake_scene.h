@@ -7,8 +7,8 @@
 namespace eyebox::capture::aravis {
 
 // A diagonal ramp of 1024 pixels that moves by a pixel with each frame. Counts are proportional to
-// the exposure, 5/8 of full scale at 10 ms in the brightest pixel and half of that in the darkest;
-// they saturate. 8- and 16-bit formats; others stay as the buffer was.
+// the exposure, a quarter of full scale at 10 ms in the brightest pixel and half of that in the
+// darkest; they saturate. 8- and 16-bit formats; others stay as the buffer was.
 constexpr int kFakeRampPixels = 1024;
 double FakeRampCount(int position, double exposure_s, double full_scale_dn);
 

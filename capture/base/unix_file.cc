@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -101,6 +102,7 @@ absl::Status UnixFile::WriteAt(uint64_t offset, const void* data, size_t size) {
     const ssize_t put = ::pwrite(descriptor_, from, size, static_cast<off_t>(offset));
     if (put < 0 && errno == EINTR) continue;
     if (put < 0) return Failed(path_, errno);
+    if (put == 0) return Failed(path_, EIO);  // or this would go on for ever
     from += put;
     offset += static_cast<uint64_t>(put);
     size -= static_cast<size_t>(put);
@@ -122,6 +124,18 @@ absl::Status UnixFile::Sync() {
 
 absl::Status UnixFile::SyncData() {
   return ::fdatasync(descriptor_) == 0 ? absl::OkStatus() : Failed(path_, errno);
+}
+
+absl::Status UnixFile::Truncate(uint64_t size) {
+  return ::ftruncate(descriptor_, static_cast<off_t>(size)) == 0 ? absl::OkStatus()
+                                                                 : Failed(path_, errno);
+}
+
+absl::StatusOr<bool> UnixFile::TryLock(Lock lock) {
+  const int operation = lock == Lock::kShared ? LOCK_SH : LOCK_EX;
+  if (::flock(descriptor_, operation | LOCK_NB) == 0) return true;
+  if (errno == EWOULDBLOCK) return false;
+  return Failed(path_, errno);
 }
 
 absl::Status SyncFolder(const std::filesystem::path& folder) {

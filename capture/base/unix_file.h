@@ -42,6 +42,11 @@ class UnixFile {
   // A failed sync must not be tried again: the kernel may have dropped the pages.
   absl::Status Sync();
   absl::Status SyncData();  // fdatasync
+  absl::Status Truncate(uint64_t size);
+
+  enum class Lock { kShared, kExclusive };
+  // flock() until the file is closed, by kill -9 too. False: another open file holds it.
+  absl::StatusOr<bool> TryLock(Lock lock);
 
  private:
   UnixFile(std::filesystem::path path, int descriptor)

@@ -32,14 +32,18 @@ absl::Status AddRange(const UnixFile& file, uint64_t begin, uint64_t end, XXH3_s
 
 uint64_t Checksum(const void* data, size_t size) { return XXH3_64bits(data, size); }
 
-absl::StatusOr<uint64_t> ChecksumOutside(const UnixFile& file, uint64_t skip_offset,
-                                         uint64_t skip_size) {
+absl::StatusOr<uint64_t> ChecksumOutside(const UnixFile& file,
+                                         std::initializer_list<ByteRange> skipped) {
   EYEBOX_ASSIGN_OR_RETURN(const uint64_t end, file.Size());
   const std::unique_ptr<XXH3_state_t, StateFree> state(XXH3_createState());
   XXH3_64bits_reset(state.get());
   std::vector<char> piece(kPieceBytes);
-  EYEBOX_RETURN_IF_ERROR(AddRange(file, 0, std::min(skip_offset, end), state.get(), piece));
-  EYEBOX_RETURN_IF_ERROR(AddRange(file, skip_offset + skip_size, end, state.get(), piece));
+  uint64_t begin = 0;
+  for (const ByteRange& range : skipped) {
+    EYEBOX_RETURN_IF_ERROR(AddRange(file, begin, std::min(range.offset, end), state.get(), piece));
+    begin = range.offset + range.size;
+  }
+  EYEBOX_RETURN_IF_ERROR(AddRange(file, begin, end, state.get(), piece));
   return XXH3_64bits_digest(state.get());
 }
 

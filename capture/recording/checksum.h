@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <string_view>
 
 #include "absl/status/statusor.h"
@@ -14,10 +15,15 @@ namespace eyebox::capture {
 uint64_t Checksum(const void* data, size_t size);
 inline uint64_t Checksum(std::string_view bytes) { return Checksum(bytes.data(), bytes.size()); }
 
-// Of all bytes of `file` except those in [skip_offset, skip_offset + skip_size), read a MiB at a
-// time. Errors: the errno of the disk.
-absl::StatusOr<uint64_t> ChecksumOutside(const UnixFile& file, uint64_t skip_offset,
-                                         uint64_t skip_size);
+struct ByteRange {
+  uint64_t offset = 0;
+  uint64_t size = 0;
+};
+
+// Of all bytes of `file` except those in `skipped`, which stand in order; read a MiB at a time.
+// Errors: the errno of the disk.
+absl::StatusOr<uint64_t> ChecksumOutside(const UnixFile& file,
+                                         std::initializer_list<ByteRange> skipped);
 
 }  // namespace eyebox::capture
 

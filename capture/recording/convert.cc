@@ -52,6 +52,10 @@ constexpr Pairs<StimulusPattern, v1::StimulusPattern> kPatterns = {
     {StimulusPattern::kFullField, v1::STIMULUS_PATTERN_FULL_FIELD},
     {StimulusPattern::kDisk, v1::STIMULUS_PATTERN_DISK},
     {StimulusPattern::kBlackDisk, v1::STIMULUS_PATTERN_BLACK_DISK}};
+constexpr Pairs<TriggerSource, v1::TriggerSource> kTriggers = {
+    {TriggerSource::kSoftware, v1::TRIGGER_SOURCE_SOFTWARE},
+    {TriggerSource::kLine, v1::TRIGGER_SOURCE_LINE},
+    {TriggerSource::kFreeRun, v1::TRIGGER_SOURCE_FREE_RUN}};
 
 template <typename Domain, typename Proto>
 Proto ToProto(const Pairs<Domain, Proto>& pairs, Domain value) {
@@ -109,6 +113,32 @@ absl::StatusOr<PinholeGeometry> FromProto(const v1::PinholeGeometry& proto,
   return PinholeGeometry{proto.focal_length_px(), proto.principal_x_px(), proto.principal_y_px()};
 }
 
+v1::CameraState ToProto(const CameraSettings& settings) {
+  v1::CameraState proto;
+  proto.set_trigger(ToProto(kTriggers, settings.trigger));
+  proto.set_trigger_line(settings.trigger_line);
+  proto.set_frame_rate_hz(settings.frame_rate_hz);
+  if (settings.black_level) proto.set_black_level(*settings.black_level);
+  return proto;
+}
+
+absl::StatusOr<CameraSettings> FromProto(const v1::CameraState& proto, const std::string& where) {
+  CameraSettings settings;
+  EYEBOX_ASSIGN_OR_RETURN(settings.trigger,
+                          FromProto(kTriggers, proto.trigger(), where + " trigger"));
+  if ((settings.trigger == TriggerSource::kLine) == proto.trigger_line().empty()) {
+    return BadInput(where + " trigger_line", "is '" + proto.trigger_line() + "'",
+                    "give it with TRIGGER_SOURCE_LINE and with nothing else");
+  }
+  EYEBOX_RETURN_IF_ERROR(CheckNotNegative(where + " frame_rate_hz", proto.frame_rate_hz()));
+  settings.trigger_line = proto.trigger_line();
+  settings.frame_rate_hz = proto.frame_rate_hz();
+  if (!proto.has_black_level()) return settings;
+  EYEBOX_RETURN_IF_ERROR(CheckFinite(where + " black_level", proto.black_level()));
+  settings.black_level = proto.black_level();
+  return settings;
+}
+
 }  // namespace
 
 v1::Rig ToProto(const RigConfig& rig) {
@@ -132,6 +162,12 @@ v1::CameraInfo ToProto(const CameraInfo& camera) {
   proto.set_exposure_max_s(camera.exposure_max_s);
   proto.set_gain_min_db(camera.gain_min_db);
   proto.set_gain_max_db(camera.gain_max_db);
+  proto.set_pixel_format(camera.pixel_format);
+  proto.set_black_level_min(camera.black_level_min);
+  proto.set_black_level_max(camera.black_level_max);
+  proto.set_software_trigger(camera.software_trigger);
+  for (const std::string& line : camera.trigger_lines) proto.add_trigger_lines(line);
+  proto.set_free_run(camera.free_run);
   return proto;
 }
 
@@ -171,6 +207,7 @@ v1::Recording ToProto(const RecordingHeader& header) {
   *proto.mutable_plan() = ToProto(header.plan);
   proto.set_software_version(header.software_version);
   proto.set_created_real_ns(header.created_real_ns);
+  if (header.camera_settings) *proto.mutable_camera_state() = ToProto(*header.camera_settings);
   return proto;
 }
 
@@ -195,6 +232,8 @@ absl::StatusOr<CameraInfo> FromProto(const v1::CameraInfo& proto, const std::str
   EYEBOX_RETURN_IF_ERROR(CheckNotNegative(where + " exposure_max_s", proto.exposure_max_s()));
   EYEBOX_RETURN_IF_ERROR(CheckFinite(where + " gain_min_db", proto.gain_min_db()));
   EYEBOX_RETURN_IF_ERROR(CheckFinite(where + " gain_max_db", proto.gain_max_db()));
+  EYEBOX_RETURN_IF_ERROR(CheckFinite(where + " black_level_min", proto.black_level_min()));
+  EYEBOX_RETURN_IF_ERROR(CheckFinite(where + " black_level_max", proto.black_level_max()));
   CameraInfo camera;
   camera.uri = proto.uri();
   camera.vendor = proto.vendor();
@@ -206,6 +245,12 @@ absl::StatusOr<CameraInfo> FromProto(const v1::CameraInfo& proto, const std::str
   camera.exposure_max_s = proto.exposure_max_s();
   camera.gain_min_db = proto.gain_min_db();
   camera.gain_max_db = proto.gain_max_db();
+  camera.pixel_format = proto.pixel_format();
+  camera.black_level_min = proto.black_level_min();
+  camera.black_level_max = proto.black_level_max();
+  camera.software_trigger = !proto.has_software_trigger() || proto.software_trigger();
+  camera.trigger_lines = {proto.trigger_lines().begin(), proto.trigger_lines().end()};
+  camera.free_run = proto.free_run();
   return camera;
 }
 
@@ -249,6 +294,10 @@ absl::StatusOr<RecordingHeader> FromProto(const v1::Recording& proto, const std:
   }
   header.software_version = proto.software_version();
   header.created_real_ns = proto.created_real_ns();
+  if (proto.has_camera_state()) {
+    EYEBOX_ASSIGN_OR_RETURN(header.camera_settings,
+                            FromProto(proto.camera_state(), where + ", camera_state"));
+  }
   return header;
 }
 

@@ -1,7 +1,9 @@
 #include "capture/recording/frame_record.h"
 
+#include <array>
 #include <bit>
 #include <cstddef>
+#include <cstring>
 #include <limits>
 #include <optional>
 #include <span>
@@ -84,6 +86,11 @@ FrameMetadata MetadataOf(const FrameRecord& record) {
   metadata.temperature_degC = Get(record, kTemperature, record.temperature_degC);
   metadata.photodiode_counts = Get(record, kPhotodiode, record.photodiode_counts);
   return metadata;
+}
+
+bool IsEmpty(const FrameRecord& record) {
+  const std::array<std::byte, sizeof(FrameRecord)> zeros = {};
+  return std::memcmp(&record, zeros.data(), zeros.size()) == 0;
 }
 
 absl::Status CheckRecord(const FrameRecord& record, uint32_t frame_index,

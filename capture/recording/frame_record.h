@@ -55,6 +55,9 @@ FrameRecord MakeFrameRecord(const Frame& frame, uint32_t frame_index, int level_
 // What `record` says of its frame, without pixels.
 FrameMetadata MetadataOf(const FrameRecord& record);
 
+// All zeros: the row never took a frame.
+bool IsEmpty(const FrameRecord& record);
+
 // Whether `record` is intact, is of the row `frame_index` and of these pixels.
 // Errors: DataLoss, naming `where` (file and frame).
 absl::Status CheckRecord(const FrameRecord& record, uint32_t frame_index,

@@ -23,6 +23,8 @@ struct RecordingHeader {
   CapturePlan plan;
   std::string software_version;
   int64_t created_real_ns = 0;  // CLOCK_REALTIME
+  // What holds throughout; exposure_s and gain_db stand with each capture and are not kept here.
+  std::optional<CameraSettings> camera_settings = {};
 };
 
 }  // namespace eyebox::capture

@@ -9,6 +9,7 @@
 #include "capture/base/status.h"
 #include "capture/recording/checksum.h"
 #include "capture/recording/convert.h"
+#include "capture/recording/frame_record.h"
 #include "capture/recording/layout.h"
 
 namespace eyebox::capture {
@@ -19,6 +20,7 @@ static_assert(std::endian::native == std::endian::little);
 constexpr size_t kLargestManifest = size_t{16} << 20;
 constexpr uint32_t kHeaderType = 1;
 constexpr uint32_t kCaptureType = 2;
+constexpr uint32_t kBegunType = 3;
 
 // Stands before every payload.
 struct Prefix {
@@ -34,7 +36,8 @@ uint64_t ChecksumOf(const Prefix& prefix, std::string_view payload) {
 }
 
 absl::Status Damaged(const std::string& where, std::string_view what) {
-  return Corrupt(where, what, "restore manifest.log from a copy of the recording");
+  return Corrupt(where, what,
+                 "restore manifest.log from a copy; after a crash, eyebox recover mends its end");
 }
 
 v1::ManifestCapture ToProto(const ManifestEntry& entry) {
@@ -49,7 +52,16 @@ v1::ManifestCapture ToProto(const ManifestEntry& entry) {
   proto.set_frames_offset_bytes(entry.frames_offset_bytes);
   proto.set_records_offset_bytes(entry.records_offset_bytes);
   proto.set_digest_xxh3(entry.digest_xxh3);
+  if (entry.row_count != entry.frame_count) proto.set_row_count(entry.row_count);
   return proto;
+}
+
+bool SizesCanBe(const ManifestEntry& entry) {
+  const uint64_t records_bytes = static_cast<uint64_t>(entry.row_count) * sizeof(FrameRecord);
+  return entry.frame_size.width_px > 0 && entry.frame_size.height_px > 0 && entry.frame_count > 0 &&
+         entry.row_count >= entry.frame_count &&
+         entry.frames_offset_bytes + entry.FramesBytes() <= entry.file_bytes &&
+         entry.records_offset_bytes + records_bytes <= entry.file_bytes;
 }
 
 absl::StatusOr<ManifestEntry> FromProto(const v1::ManifestCapture& proto,
@@ -64,12 +76,9 @@ absl::StatusOr<ManifestEntry> FromProto(const v1::ManifestCapture& proto,
   entry.frames_offset_bytes = proto.frames_offset_bytes();
   entry.records_offset_bytes = proto.records_offset_bytes();
   entry.digest_xxh3 = proto.digest_xxh3();
-  if (entry.frame_size.width_px > 0 && entry.frame_size.height_px > 0 && entry.frame_count > 0 &&
-      entry.frames_offset_bytes + entry.FramesBytes() <= entry.file_bytes &&
-      entry.records_offset_bytes < entry.file_bytes) {
-    return entry;
-  }
-  return Damaged(where, "states sizes that cannot be");
+  entry.row_count = proto.row_count() == 0 ? entry.frame_count : proto.row_count();
+  if (!SizesCanBe(entry)) return Damaged(where, "states sizes that cannot be");
+  return entry;
 }
 
 absl::Status AddHeader(const std::string& payload, const std::string& where, Manifest& manifest) {
@@ -85,15 +94,37 @@ absl::Status AddHeader(const std::string& payload, const std::string& where, Man
   return absl::OkStatus();
 }
 
+absl::Status CheckTurn(const ManifestEntry& entry, const std::string& where,
+                       const Manifest& manifest) {
+  if (entry.number == static_cast<int>(manifest.entries.size()) + 1) return absl::OkStatus();
+  return Damaged(where, "names capture " + std::to_string(entry.number) + " out of turn");
+}
+
 absl::Status AddCapture(const std::string& payload, const std::string& where, Manifest& manifest) {
   v1::ManifestCapture proto;
   if (!proto.ParseFromString(payload)) return Damaged(where, "is no capture record");
   EYEBOX_ASSIGN_OR_RETURN(ManifestEntry entry, FromProto(proto, where));
-  if (entry.number != static_cast<int>(manifest.entries.size()) + 1) {
-    return Damaged(where, "names capture " + std::to_string(entry.number) + " out of turn");
-  }
+  EYEBOX_RETURN_IF_ERROR(CheckTurn(entry, where, manifest));
   manifest.entries.push_back(std::move(entry));
+  manifest.begun.reset();
   return absl::OkStatus();
+}
+
+absl::Status AddBegun(const std::string& payload, const std::string& where, Manifest& manifest) {
+  v1::ManifestBegun proto;
+  if (!proto.ParseFromString(payload)) return Damaged(where, "is no record of a begun capture");
+  EYEBOX_ASSIGN_OR_RETURN(ManifestEntry entry, FromProto(proto.capture(), where));
+  EYEBOX_RETURN_IF_ERROR(CheckTurn(entry, where, manifest));
+  manifest.begun = {std::move(entry), proto.structure_xxh3()};
+  return absl::OkStatus();
+}
+
+absl::Status AddRecord(uint32_t type, const std::string& payload, bool first,
+                       const std::string& where, Manifest& manifest) {
+  if (first && type == kHeaderType) return AddHeader(payload, where, manifest);
+  if (!first && type == kCaptureType) return AddCapture(payload, where, manifest);
+  if (!first && type == kBegunType) return AddBegun(payload, where, manifest);
+  return Damaged(where, "holds a record of unknown type " + std::to_string(type));
 }
 
 // The payload of the record at `at`, which moves behind it.
@@ -114,10 +145,27 @@ absl::StatusOr<std::pair<uint32_t, std::string>> NextRecord(const std::string& b
 
 }  // namespace
 
+uint64_t ManifestEntry::RecordOffset(uint64_t row) const {
+  return records_offset_bytes + row * sizeof(FrameRecord);
+}
+
+absl::StatusOr<uint64_t> DigestOf(const UnixFile& file, const ManifestEntry& entry) {
+  return ChecksumOutside(file, {{entry.frames_offset_bytes, entry.FramesBytes()}});
+}
+
+absl::StatusOr<uint64_t> StructureOf(const UnixFile& file, const ManifestEntry& entry) {
+  const ByteRange frames = {entry.frames_offset_bytes, entry.FramesBytes()};
+  const ByteRange records = {entry.records_offset_bytes,
+                             static_cast<uint64_t>(entry.row_count) * sizeof(FrameRecord)};
+  if (records.offset < frames.offset) return ChecksumOutside(file, {records, frames});
+  return ChecksumOutside(file, {frames, records});
+}
+
 absl::StatusOr<ManifestLog> ManifestLog::Create(const std::filesystem::path& file,
                                                 std::string_view header_text) {
   EYEBOX_ASSIGN_OR_RETURN(UnixFile created, UnixFile::Create(file));
   ManifestLog log(std::move(created));
+  EYEBOX_RETURN_IF_ERROR(log.Lock());
   v1::ManifestHeader proto;
   proto.set_format_version(kFormatVersion);
   proto.set_header_bytes(header_text.size());
@@ -127,8 +175,37 @@ absl::StatusOr<ManifestLog> ManifestLog::Create(const std::filesystem::path& fil
   return log;
 }
 
+absl::StatusOr<ManifestLog> ManifestLog::Open(const std::filesystem::path& file,
+                                              ManifestScan& scan) {
+  EYEBOX_ASSIGN_OR_RETURN(UnixFile opened, UnixFile::OpenToWrite(file));
+  ManifestLog log(std::move(opened));
+  EYEBOX_RETURN_IF_ERROR(log.Lock());
+  EYEBOX_ASSIGN_OR_RETURN(scan, ScanManifest(file));
+  log.end_ = scan.whole_bytes;
+  return log;
+}
+
+absl::Status ManifestLog::Lock() {
+  EYEBOX_ASSIGN_OR_RETURN(const bool locked, file_.TryLock(UnixFile::Lock::kExclusive));
+  if (locked) return absl::OkStatus();
+  return Rejected(file_.path().string(), "is locked: something records to it",
+                  "wait until it is done");
+}
+
 absl::Status ManifestLog::Append(const ManifestEntry& entry) {
   return AppendRecord(kCaptureType, ToProto(entry).SerializeAsString());
+}
+
+absl::Status ManifestLog::Append(const BegunCapture& begun) {
+  v1::ManifestBegun proto;
+  *proto.mutable_capture() = ToProto(begun.entry);
+  proto.set_structure_xxh3(begun.structure_xxh3);
+  return AppendRecord(kBegunType, proto.SerializeAsString());
+}
+
+absl::Status ManifestLog::CutRest() {
+  EYEBOX_RETURN_IF_ERROR(file_.Truncate(end_));
+  return file_.Sync();
 }
 
 absl::Status ManifestLog::AppendRecord(uint32_t type, const std::string& payload) {
@@ -141,22 +218,50 @@ absl::Status ManifestLog::AppendRecord(uint32_t type, const std::string& payload
   return file_.Sync();
 }
 
-absl::StatusOr<Manifest> ReadManifest(const std::filesystem::path& file) {
-  EYEBOX_ASSIGN_OR_RETURN(const std::string bytes, ReadWholeFile(file, kLargestManifest));
-  if (bytes.empty()) return Damaged(file.string(), "is empty");
-  Manifest manifest;
-  for (size_t at = 0; at < bytes.size();) {
+absl::StatusOr<ManifestScan> ScanManifest(const std::filesystem::path& file) {
+  ManifestScan scan;
+  EYEBOX_ASSIGN_OR_RETURN(scan.bytes, ReadWholeFile(file, kLargestManifest));
+  if (scan.bytes.empty()) scan.rest = Damaged(file.string(), "is empty");
+  for (size_t at = 0; scan.rest.ok() && at < scan.bytes.size();) {
     const std::string where = file.string() + ", byte " + std::to_string(at);
     const bool first = at == 0;
-    EYEBOX_ASSIGN_OR_RETURN(const auto record, NextRecord(bytes, at, where));
-    const auto& [type, payload] = record;
-    if (type != (first ? kHeaderType : kCaptureType)) {
-      return Damaged(where, "holds a record of unknown type " + std::to_string(type));
-    }
-    EYEBOX_RETURN_IF_ERROR(first ? AddHeader(payload, where, manifest)
-                                 : AddCapture(payload, where, manifest));
+    const auto record = NextRecord(scan.bytes, at, where);
+    scan.rest = record.ok() ? AddRecord(record->first, record->second, first, where, scan.manifest)
+                            : record.status();
+    if (absl::IsInvalidArgument(scan.rest)) return scan.rest;  // whole, yet beyond this version
+    if (scan.rest.ok()) scan.whole_bytes = at;
   }
-  return manifest;
+  return scan;
+}
+
+bool HoldsWholeRecord(std::string_view bytes) {
+  Prefix prefix;
+  for (; bytes.size() >= sizeof(prefix); bytes.remove_prefix(1)) {
+    std::memcpy(&prefix, bytes.data(), sizeof(prefix));
+    const std::string_view payload = bytes.substr(sizeof(prefix));
+    if (prefix.length > 0 && prefix.length <= payload.size() &&
+        prefix.xxh3 == ChecksumOf(prefix, payload.substr(0, prefix.length))) {
+      return true;
+    }
+  }
+  return false;
+}
+
+absl::StatusOr<Manifest> ReadManifest(const std::filesystem::path& file) {
+  EYEBOX_ASSIGN_OR_RETURN(ManifestScan scan, ScanManifest(file));
+  if (scan.rest.ok()) return std::move(scan.manifest);
+  EYEBOX_ASSIGN_OR_RETURN(const bool writing, IsBeingWritten(file));
+  if (writing && scan.whole_bytes > 0) return std::move(scan.manifest);
+  // The writer may have finished between the two looks.
+  EYEBOX_ASSIGN_OR_RETURN(scan, ScanManifest(file));
+  if (!scan.rest.ok()) return scan.rest;
+  return std::move(scan.manifest);
+}
+
+absl::StatusOr<bool> IsBeingWritten(const std::filesystem::path& manifest) {
+  EYEBOX_ASSIGN_OR_RETURN(UnixFile file, UnixFile::OpenToRead(manifest));
+  EYEBOX_ASSIGN_OR_RETURN(const bool locked, file.TryLock(UnixFile::Lock::kShared));
+  return !locked;
 }
 
 }  // namespace eyebox::capture

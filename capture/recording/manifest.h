@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +22,7 @@ struct ManifestEntry {
   CaptureSpec spec;
   ImageSize frame_size;
   int frame_count = 0;
+  int row_count = 0;  // of /frames; more than frame_count where the capture stopped early
   bool packed = false;
   uint64_t file_bytes = 0;
   uint64_t frames_offset_bytes = 0;  // 0 in a packed file
@@ -30,36 +32,76 @@ struct ManifestEntry {
   uint64_t FrameBytes() const { return frame_size.PixelCount() * sizeof(uint16_t); }
   // Of /frames in the file; nothing where chunks are scattered over it.
   uint64_t FramesBytes() const {
-    return packed ? 0 : FrameBytes() * static_cast<uint64_t>(frame_count);
+    return packed ? 0 : FrameBytes() * static_cast<uint64_t>(row_count);
   }
+  uint64_t FrameOffset(uint64_t row) const { return frames_offset_bytes + row * FrameBytes(); }
+  uint64_t RecordOffset(uint64_t row) const;
 };
 
-// Appends; every record is durable when its call returns OK.
-class ManifestLog {
- public:
-  // Creates the file and its first record. `header_text` is the content of recording.textproto.
-  static absl::StatusOr<ManifestLog> Create(const std::filesystem::path& file,
-                                            std::string_view header_text);
-  // Errors: the errno of the disk; after one, nothing more may be appended.
-  absl::Status Append(const ManifestEntry& entry);
-
- private:
-  explicit ManifestLog(UnixFile file) : file_(std::move(file)) {}
-  absl::Status AppendRecord(uint32_t type, const std::string& payload);
-
-  UnixFile file_;
-  uint64_t end_ = 0;
+// A capture file that was about to take its first frame.
+struct BegunCapture {
+  ManifestEntry entry;          // frame_count is row_count, digest_xxh3 0
+  uint64_t structure_xxh3 = 0;  // of the file without /frames and /frame_records
 };
 
 struct Manifest {
   uint64_t header_bytes = 0;
   uint64_t header_xxh3 = 0;
   std::vector<ManifestEntry> entries;
+  std::optional<BegunCapture> begun;  // the one under way, or given up
 };
 
-// Errors: NotFound; DataLoss (a record that is torn or damaged, numbers with a gap);
-// InvalidArgument (written by a newer version). Each names file and byte.
+// What digest_xxh3 and structure_xxh3 must be, of a capture's file. Errors: the errno of the disk.
+absl::StatusOr<uint64_t> DigestOf(const UnixFile& file, const ManifestEntry& entry);
+absl::StatusOr<uint64_t> StructureOf(const UnixFile& file, const ManifestEntry& entry);
+
+// As many whole records as stand at the beginning of manifest.log.
+struct ManifestScan {
+  Manifest manifest;
+  std::string bytes;         // of the file
+  uint64_t whole_bytes = 0;  // that those records take
+  absl::Status rest;         // what is wrong with the bytes behind them; OK where there are none
+};
+
+// Appends; every record is durable when its call returns OK. Locks the file against a second
+// writer.
+class ManifestLog {
+ public:
+  // Creates the file and its first record. `header_text` is the content of recording.textproto.
+  static absl::StatusOr<ManifestLog> Create(const std::filesystem::path& file,
+                                            std::string_view header_text);
+  // To go on behind the last whole record; `scan` tells what stands before it.
+  // Errors: those of ScanManifest; FailedPrecondition (locked: it is being recorded to).
+  static absl::StatusOr<ManifestLog> Open(const std::filesystem::path& file, ManifestScan& scan);
+
+  // Errors: the errno of the disk; after one, nothing more may be appended.
+  absl::Status Append(const ManifestEntry& entry);
+  absl::Status Append(const BegunCapture& begun);
+  // Removes what stands behind the last whole record.
+  absl::Status CutRest();
+
+ private:
+  explicit ManifestLog(UnixFile file) : file_(std::move(file)) {}
+  absl::Status Lock();
+  absl::Status AppendRecord(uint32_t type, const std::string& payload);
+
+  UnixFile file_;
+  uint64_t end_ = 0;
+};
+
+// Errors: NotFound, the errno of the disk, InvalidArgument (written by a newer version).
+absl::StatusOr<ManifestScan> ScanManifest(const std::filesystem::path& file);
+
+// Whether a whole record begins anywhere in `bytes`.
+bool HoldsWholeRecord(std::string_view bytes);
+
+// A record that a living writer is just appending is not there yet.
+// Errors: those of ScanManifest; DataLoss (a record that is torn or damaged, numbers with a gap).
+// Each names file and byte.
 absl::StatusOr<Manifest> ReadManifest(const std::filesystem::path& file);
+
+// Whether a writer has the recording open.
+absl::StatusOr<bool> IsBeingWritten(const std::filesystem::path& manifest);
 
 }  // namespace eyebox::capture
 

@@ -8,7 +8,6 @@
 #include "capture/base/status.h"
 #include "capture/base/unix_file.h"
 #include "capture/recording/capture_file.h"
-#include "capture/recording/checksum.h"
 #include "capture/recording/frame_record.h"
 #include "capture/recording/header_file.h"
 #include "capture/recording/layout.h"
@@ -41,10 +40,11 @@ absl::StatusOr<ManifestEntry> PackCapture(RecordingReader& reader, const Capture
   entry.spec = capture.spec;
   entry.frame_size = capture.frame_size;
   entry.frame_count = capture.frame_count;
+  entry.row_count = capture.frame_count;
   entry.packed = true;
   entry.file_bytes = layout.file_bytes;
   entry.records_offset_bytes = layout.records_offset_bytes;
-  EYEBOX_ASSIGN_OR_RETURN(entry.digest_xxh3, ChecksumOutside(written, 0, 0));
+  EYEBOX_ASSIGN_OR_RETURN(entry.digest_xxh3, DigestOf(written, entry));
   return entry;
 }
 

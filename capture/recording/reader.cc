@@ -4,11 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "capture/base/file.h"
 #include "capture/base/status.h"
 #include "capture/base/unix_file.h"
 #include "capture/recording/capture_file.h"
-#include "capture/recording/checksum.h"
 #include "capture/recording/frame_record.h"
 #include "capture/recording/header_file.h"
 #include "capture/recording/layout.h"
@@ -17,18 +15,7 @@
 namespace eyebox::capture {
 namespace {
 
-constexpr size_t kLargestHeader = size_t{16} << 20;
 constexpr const char* kRestore = "restore it from a copy or capture it again";
-
-absl::StatusOr<RecordingHeader> ReadHeader(const std::filesystem::path& file,
-                                           const Manifest& manifest) {
-  EYEBOX_ASSIGN_OR_RETURN(const std::string text, ReadWholeFile(file, kLargestHeader));
-  if (text.size() != manifest.header_bytes || Checksum(text) != manifest.header_xxh3) {
-    return Corrupt(file.string(), "is not what was written: it does not match manifest.log",
-                   "restore it from a copy; it must not be edited");
-  }
-  return ParseHeader(text, file);
-}
 
 // Everything but the pixels of an unpacked file, which their records vouch for.
 absl::Status CheckDigest(const UnixFile& file, const ManifestEntry& entry) {
@@ -39,8 +26,7 @@ absl::Status CheckDigest(const UnixFile& file, const ManifestEntry& entry) {
         "has " + std::to_string(size) + " bytes instead of " + std::to_string(entry.file_bytes),
         kRestore);
   }
-  EYEBOX_ASSIGN_OR_RETURN(const uint64_t digest,
-                          ChecksumOutside(file, entry.frames_offset_bytes, entry.FramesBytes()));
+  EYEBOX_ASSIGN_OR_RETURN(const uint64_t digest, DigestOf(file, entry));
   if (digest == entry.digest_xxh3) return absl::OkStatus();
   return Corrupt(file.path().string(), "is damaged: it does not match manifest.log", kRestore);
 }
@@ -75,28 +61,38 @@ class FileReader final : public RecordingReader {
     std::unique_ptr<PackedFrames> packed;
     if (entry.packed) {
       EYEBOX_ASSIGN_OR_RETURN(
-          packed, PackedFrames::Open(capture.file, {entry.frame_size, entry.frame_count}));
+          packed, PackedFrames::Open(capture.file, {entry.frame_size, entry.row_count}));
     }
     pixels_dn_.resize(entry.frame_size.PixelCount());
-    for (int i = 0; i < entry.frame_count; ++i) {
-      const auto index = static_cast<uint64_t>(i);
+    int shown = 0;
+    for (uint32_t row = 0; row < static_cast<uint32_t>(entry.row_count); ++row) {
+      EYEBOX_ASSIGN_OR_RETURN(const FrameRecord record, ReadRecord(file, entry, row));
+      if (entry.row_count > entry.frame_count && IsEmpty(record)) continue;
       EYEBOX_RETURN_IF_ERROR(
-          packed ? packed->Read(i, pixels_dn_)
-                 : file.ReadAt(entry.frames_offset_bytes + index * entry.FrameBytes(),
-                               pixels_dn_.data(), entry.FrameBytes()));
-      EYEBOX_RETURN_IF_ERROR(Show(file, entry, static_cast<uint32_t>(i), visit));
+          packed ? packed->Read(static_cast<int>(row), pixels_dn_)
+                 : file.ReadAt(entry.FrameOffset(row), pixels_dn_.data(), entry.FrameBytes()));
+      EYEBOX_RETURN_IF_ERROR(Show(file, entry, row, record, visit));
+      ++shown;
     }
-    return absl::OkStatus();
+    if (shown == entry.frame_count) return absl::OkStatus();
+    return Corrupt(file.path().string(),
+                   "holds " + std::to_string(shown) + " frames instead of " +
+                       std::to_string(entry.frame_count),
+                   kRestore);
   }
 
  private:
-  absl::Status Show(const UnixFile& file, const ManifestEntry& entry, uint32_t index,
-                    const FrameVisitor& visit) {
+  static absl::StatusOr<FrameRecord> ReadRecord(const UnixFile& file, const ManifestEntry& entry,
+                                                uint32_t row) {
     FrameRecord record;
-    EYEBOX_RETURN_IF_ERROR(
-        file.ReadAt(entry.records_offset_bytes + index * sizeof(record), &record, sizeof(record)));
-    const std::string where = file.path().string() + ", frame " + std::to_string(index);
-    EYEBOX_RETURN_IF_ERROR(CheckRecord(record, index, pixels_dn_, where));
+    EYEBOX_RETURN_IF_ERROR(file.ReadAt(entry.RecordOffset(row), &record, sizeof(record)));
+    return record;
+  }
+
+  absl::Status Show(const UnixFile& file, const ManifestEntry& entry, uint32_t row,
+                    const FrameRecord& record, const FrameVisitor& visit) {
+    const std::string where = file.path().string() + ", frame " + std::to_string(row);
+    EYEBOX_RETURN_IF_ERROR(CheckRecord(record, row, pixels_dn_, where));
     return visit({.metadata = MetadataOf(record),
                   .view = {.pixels_dn = pixels_dn_, .size = entry.frame_size},
                   .owner = nullptr});
@@ -121,7 +117,7 @@ absl::StatusOr<std::unique_ptr<RecordingReader>> RecordingReader::Open(
                    "name the folder of a recording");
   }
   EYEBOX_ASSIGN_OR_RETURN(Manifest manifest, ReadManifest(ManifestPath(recording)));
-  EYEBOX_ASSIGN_OR_RETURN(RecordingHeader header, ReadHeader(HeaderPath(recording), manifest));
+  EYEBOX_ASSIGN_OR_RETURN(RecordingHeader header, ReadHeader(recording, manifest));
   for (const ManifestEntry& entry : manifest.entries) {
     EYEBOX_ASSIGN_OR_RETURN(const UnixFile file, OpenCapture(CapturePath(recording, entry.number)));
     if (!entry.packed) EYEBOX_RETURN_IF_ERROR(CheckDigest(file, entry));

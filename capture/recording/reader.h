@@ -20,11 +20,12 @@ struct CaptureEntry {
   int number = 0;  // 1, 2, ... as in captures/000001.h5
   CaptureSpec spec;
   ImageSize frame_size;
-  int frame_count = 0;  // frames that were acknowledged
+  int frame_count = 0;  // whole frames; fewer than spec.repeats where the capture stopped early
   bool packed = false;  // compressed afterwards (`pack`)
   std::filesystem::path file;
 };
 
+// Sees the captures that were published when it was opened, also while more are recorded.
 // Not thread-safe (libhdf5 is not); several readers may read one recording in turn.
 class RecordingReader {
  public:

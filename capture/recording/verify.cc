@@ -4,31 +4,50 @@
 
 #include "capture/base/status.h"
 #include "capture/recording/layout.h"
+#include "capture/recording/manifest.h"
 #include "capture/recording/reader.h"
 
 namespace eyebox::capture {
 namespace {
 
-// A published file that the manifest does not name: the manifest lost its end, or the machine
-// stopped between renaming the file and naming it.
-absl::Status CheckAllNamed(const std::filesystem::path& recording, const RecordingReader& reader) {
-  std::set<std::filesystem::path> named;
-  for (const CaptureEntry& capture : reader.Captures()) named.insert(capture.file.filename());
+using Names = std::set<std::filesystem::path>;
+
+absl::StatusOr<Names> PublishedFiles(const std::filesystem::path& recording) {
   std::error_code error;
-  std::set<std::filesystem::path> unnamed;
+  Names names;
   for (const auto& file : std::filesystem::directory_iterator(CapturesFolder(recording), error)) {
-    const std::filesystem::path name = file.path().filename();
-    if (name.extension() == ".h5" && !named.contains(name)) unnamed.insert(file.path());
+    if (file.path().extension() == ".h5") names.insert(file.path());
   }
-  if (error) return SystemFailed(CapturesFolder(recording).string(), error.value(), "check it");
+  if (error && error != std::errc::no_such_file_or_directory) {
+    return SystemFailed(CapturesFolder(recording).string(), error.value(), "check it");
+  }
+  return names;
+}
+
+// A published file that the manifest does not name: the manifest lost its end, or the machine
+// stopped between renaming the file and naming it. A writer at work names it in a moment.
+absl::Status CheckAllNamed(const std::filesystem::path& recording, const Names& files,
+                           const RecordingReader& reader) {
+  Names unnamed = files;
+  for (const CaptureEntry& capture : reader.Captures()) unnamed.erase(capture.file);
+  const int next = static_cast<int>(reader.Captures().size()) + 1;
+  if (unnamed.contains(CapturePath(recording, next))) {
+    EYEBOX_ASSIGN_OR_RETURN(const bool writing, IsBeingWritten(ManifestPath(recording)));
+    EYEBOX_ASSIGN_OR_RETURN(const Manifest now, ReadManifest(ManifestPath(recording)));
+    if (writing || static_cast<int>(now.entries.size()) >= next) {
+      unnamed.erase(CapturePath(recording, next));
+    }
+  }
   if (unnamed.empty()) return absl::OkStatus();
   return Corrupt(unnamed.begin()->string(), "is not named by manifest.log",
-                 "restore manifest.log from a copy, or move the file away to do without it");
+                 "restore manifest.log from a copy; after a crash, eyebox recover enters the file");
 }
 
 }  // namespace
 
 absl::StatusOr<VerifyReport> VerifyRecording(const std::filesystem::path& recording) {
+  // Listed before the manifest is read: what is published afterwards is of no concern.
+  EYEBOX_ASSIGN_OR_RETURN(const Names files, PublishedFiles(recording));
   EYEBOX_ASSIGN_OR_RETURN(const auto reader, RecordingReader::Open(recording));
   VerifyReport report;
   for (const CaptureEntry& capture : reader->Captures()) {
@@ -42,7 +61,7 @@ absl::StatusOr<VerifyReport> VerifyRecording(const std::filesystem::path& record
     report.bytes += static_cast<int64_t>(size);
     ++report.captures;
   }
-  EYEBOX_RETURN_IF_ERROR(CheckAllNamed(recording, *reader));
+  EYEBOX_RETURN_IF_ERROR(CheckAllNamed(recording, files, *reader));
   return report;
 }
 

@@ -3,6 +3,7 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <system_error>
 #include <utility>
 
@@ -10,44 +11,52 @@
 #include "capture/base/status.h"
 #include "capture/base/unix_file.h"
 #include "capture/recording/capture_file.h"
-#include "capture/recording/checksum.h"
 #include "capture/recording/frame_record.h"
 #include "capture/recording/header_file.h"
 #include "capture/recording/layout.h"
 #include "capture/recording/manifest.h"
+#include "capture/recording/reader.h"
 #include "capture/recording/staging.h"
 
 namespace eyebox::capture {
 namespace {
+
+using Path = std::filesystem::path;
 
 // What HDF5 takes beside frames and records, and a reserve for manifest and results.
 constexpr double kSpareBytes = 1 << 20;
 
 std::string Megabytes(double bytes) { return std::to_string(bytes / 1e6) + " MB"; }
 
-absl::Status DiskFull(const std::filesystem::path& folder, double needed, double free) {
-  return absl::ResourceExhaustedError(Complaint(
-      folder.string(),
-      "needs " + Megabytes(needed) + " for the next capture, " + Megabytes(free) + " are free",
-      "free space, use another disk or plan fewer frames"));
+// In double: a plan may ask for more bytes than 64 bits count.
+double NeededBytes(const ManifestEntry& entry) {
+  return static_cast<double>(entry.FrameBytes() + sizeof(FrameRecord)) *
+             static_cast<double>(entry.row_count) +
+         kSpareBytes;
 }
 
-// In double: a plan may ask for more bytes than 64 bits count.
-absl::Status CheckSpace(const std::filesystem::path& folder, const ManifestEntry& entry) {
+absl::Status DiskFull(const absl::Status& refused, const ManifestEntry& entry) {
+  return absl::ResourceExhaustedError(std::string(refused.message()) + " (the next capture needs " +
+                                      Megabytes(NeededBytes(entry)) + ")");
+}
+
+absl::Status CheckSpace(const Path& folder, const ManifestEntry& entry) {
   struct statvfs state {};
   if (::statvfs(folder.c_str(), &state) != 0) {
     return SystemFailed(folder.string(), errno, "check the path");
   }
   const double free = static_cast<double>(state.f_bavail) * static_cast<double>(state.f_frsize);
-  const double needed = static_cast<double>(entry.FrameBytes() + sizeof(FrameRecord)) *
-                            static_cast<double>(entry.frame_count) +
-                        kSpareBytes;
-  return needed <= free ? absl::OkStatus() : DiskFull(folder, needed, free);
+  if (NeededBytes(entry) <= free) return absl::OkStatus();
+  return absl::ResourceExhaustedError(
+      Complaint(folder.string(),
+                "needs " + Megabytes(NeededBytes(entry)) + " for the next capture, " +
+                    Megabytes(free) + " are free",
+                "free space, use another disk or plan fewer frames"));
 }
 
 // What captures share: the folder, the manifest, whether either may still be written.
 struct Book {
-  std::filesystem::path recording;
+  Path recording;
   CameraInfo camera;
   ManifestLog manifest;
   int published = 0;
@@ -70,10 +79,10 @@ class FileCapture final : public CaptureWriter {
     const FrameRecord record =
         MakeFrameRecord(frame, static_cast<uint32_t>(index), entry_.spec.level_id);
     EYEBOX_RETURN_IF_ERROR(
-        Remember(file_.WriteAt(entry_.frames_offset_bytes + index * entry_.FrameBytes(),
-                               frame.view.pixels_dn.data(), frame.view.pixels_dn.size_bytes())));
-    EYEBOX_RETURN_IF_ERROR(Remember(file_.WriteAt(
-        entry_.records_offset_bytes + index * sizeof(record), &record, sizeof(record))));
+        Remember(file_.WriteAt(entry_.FrameOffset(index), frame.view.pixels_dn.data(),
+                               frame.view.pixels_dn.size_bytes())));
+    EYEBOX_RETURN_IF_ERROR(
+        Remember(file_.WriteAt(entry_.RecordOffset(index), &record, sizeof(record))));
     ++appended_;
     return absl::OkStatus();
   }
@@ -87,9 +96,20 @@ class FileCapture final : public CaptureWriter {
 
   absl::Status Publish() override {
     EYEBOX_RETURN_IF_ERROR(CheckUsable());
-    EYEBOX_RETURN_IF_ERROR(CheckComplete());
-    EYEBOX_ASSIGN_OR_RETURN(entry_.digest_xxh3, ChecksumOutside(file_, entry_.frames_offset_bytes,
-                                                                entry_.FramesBytes()));
+    EYEBOX_RETURN_IF_ERROR(CheckAcknowledged(static_cast<uint64_t>(entry_.row_count)));
+    return PublishAcknowledged();
+  }
+
+  absl::Status PublishEarly() override {
+    EYEBOX_RETURN_IF_ERROR(CheckUsable());
+    EYEBOX_RETURN_IF_ERROR(CheckAcknowledged(std::max(appended_, uint64_t{1})));
+    return PublishAcknowledged();
+  }
+
+ private:
+  absl::Status PublishAcknowledged() {
+    entry_.frame_count = static_cast<int>(acknowledged_);
+    EYEBOX_ASSIGN_OR_RETURN(entry_.digest_xxh3, DigestOf(file_, entry_));
     EYEBOX_RETURN_IF_ERROR(Remember(file_.Sync()));
     EYEBOX_RETURN_IF_ERROR(
         Remember(RenameDurably(file_.path(), CapturePath(book_->recording, entry_.number))));
@@ -100,7 +120,6 @@ class FileCapture final : public CaptureWriter {
     return status;
   }
 
- private:
   absl::Status CheckUsable() const {
     const std::string where = file_.path().string();
     if (closed_) return Rejected(where, "is published already", "begin another capture");
@@ -128,18 +147,18 @@ class FileCapture final : public CaptureWriter {
                           std::to_string(entry_.frame_size.height_px) + " px",
                       "keep the frame size within a capture");
     }
-    if (appended_ >= static_cast<uint64_t>(entry_.frame_count)) {
+    if (appended_ >= static_cast<uint64_t>(entry_.row_count)) {
       return BadInput(where, "is one more than the capture was announced with",
                       "announce as many repeats as are taken");
     }
     return absl::OkStatus();
   }
 
-  absl::Status CheckComplete() const {
-    if (acknowledged_ == static_cast<uint64_t>(entry_.frame_count)) return absl::OkStatus();
+  absl::Status CheckAcknowledged(uint64_t expected) const {
+    if (acknowledged_ == expected) return absl::OkStatus();
     return Rejected(file_.path().string(),
                     "has " + std::to_string(acknowledged_) + " acknowledged frames of " +
-                        std::to_string(entry_.frame_count),
+                        std::to_string(expected),
                     "append and acknowledge all of them first");
   }
 
@@ -163,8 +182,8 @@ class FileRecording final : public RecordingWriter {
     entry.number = book_->published + 1;
     entry.spec = spec;
     entry.frame_size = frame_size;
-    entry.frame_count = spec.repeats;
-    const std::filesystem::path partial = PartialPath(book_->recording, entry.number);
+    entry.frame_count = entry.row_count = spec.repeats;
+    const Path partial = PartialPath(book_->recording, entry.number);
     EYEBOX_RETURN_IF_ERROR(CheckShape(partial, entry));
     // A capture that is taken again begins anew, and its space counts as free.
     std::error_code ignored;
@@ -173,8 +192,10 @@ class FileRecording final : public RecordingWriter {
     absl::StatusOr<UnixFile> file = Prepare(partial, entry);
     if (!file.ok()) {
       ::unlink(partial.c_str());
-      return std::move(file).status();
+      if (!absl::IsResourceExhausted(file.status())) return std::move(file).status();
+      return DiskFull(file.status(), entry);  // a quota, or another program was faster
     }
+    EYEBOX_RETURN_IF_ERROR(NoteBegun(*file, entry));
     return std::make_unique<FileCapture>(book_, std::move(entry), *std::move(file));
   }
 
@@ -190,7 +211,7 @@ class FileRecording final : public RecordingWriter {
     return absl::OkStatus();
   }
 
-  static absl::Status CheckShape(const std::filesystem::path& partial, const ManifestEntry& entry) {
+  static absl::Status CheckShape(const Path& partial, const ManifestEntry& entry) {
     if (entry.frame_count < 1) {
       return BadInput(partial.string(),
                       "is to hold " + std::to_string(entry.frame_count) + " frames",
@@ -201,7 +222,7 @@ class FileRecording final : public RecordingWriter {
   }
 
   // libhdf5 has closed the file when its space is reserved.
-  absl::StatusOr<UnixFile> Prepare(const std::filesystem::path& partial, ManifestEntry& entry) {
+  absl::StatusOr<UnixFile> Prepare(const Path& partial, ManifestEntry& entry) {
     EYEBOX_ASSIGN_OR_RETURN(const CaptureFileLayout layout,
                             CreateCaptureFile(partial, {entry.frame_size, entry.frame_count},
                                               CaptureMeta(book_->camera, entry.spec)));
@@ -211,7 +232,17 @@ class FileRecording final : public RecordingWriter {
     EYEBOX_ASSIGN_OR_RETURN(UnixFile file, UnixFile::OpenToWrite(partial));
     EYEBOX_RETURN_IF_ERROR(file.Reserve(layout.file_bytes));
     EYEBOX_RETURN_IF_ERROR(file.Sync());
+    EYEBOX_RETURN_IF_ERROR(SyncFolder(partial.parent_path()));
     return file;
+  }
+
+  // What recovery needs to trust a file that was never published.
+  absl::Status NoteBegun(const UnixFile& file, const ManifestEntry& entry) {
+    BegunCapture begun = {.entry = entry};
+    EYEBOX_ASSIGN_OR_RETURN(begun.structure_xxh3, StructureOf(file, entry));
+    const absl::Status status = book_->manifest.Append(begun);
+    book_->failed |= !status.ok();
+    return status;
   }
 
   const std::shared_ptr<Book> book_;
@@ -220,7 +251,7 @@ class FileRecording final : public RecordingWriter {
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<RecordingWriter>> RecordingWriter::Create(
-    const std::filesystem::path& recording, const RecordingHeader& header, const Clock*) {
+    const Path& recording, const RecordingHeader& header, const Clock*) {
   EYEBOX_ASSIGN_OR_RETURN(const std::string text, HeaderText(header));
   EYEBOX_RETURN_IF_ERROR(CheckVacant(recording));
   EYEBOX_RETURN_IF_ERROR(CreateFolders(CapturesFolder(recording)));
@@ -229,6 +260,26 @@ absl::StatusOr<std::unique_ptr<RecordingWriter>> RecordingWriter::Create(
   EYEBOX_RETURN_IF_ERROR(SyncFolder(recording.parent_path()));
   return std::make_unique<FileRecording>(
       Book{.recording = recording, .camera = header.camera, .manifest = std::move(manifest)});
+}
+
+absl::StatusOr<std::unique_ptr<RecordingWriter>> RecordingWriter::Resume(const Path& recording) {
+  EYEBOX_RETURN_IF_ERROR(RecordingReader::Open(recording).status());
+  ManifestScan scan;
+  EYEBOX_ASSIGN_OR_RETURN(ManifestLog manifest, ManifestLog::Open(ManifestPath(recording), scan));
+  EYEBOX_RETURN_IF_ERROR(scan.rest);
+  const int published = static_cast<int>(scan.manifest.entries.size());
+  for (const Path& file :
+       {PartialPath(recording, published + 1), CapturePath(recording, published + 1)}) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored)) continue;
+    return Rejected(file.string(), "is of a capture that was interrupted",
+                    "run eyebox recover " + recording.string() + " first");
+  }
+  EYEBOX_ASSIGN_OR_RETURN(const RecordingHeader header, ReadHeader(recording, scan.manifest));
+  return std::make_unique<FileRecording>(Book{.recording = recording,
+                                              .camera = header.camera,
+                                              .manifest = std::move(manifest),
+                                              .published = published});
 }
 
 }  // namespace eyebox::capture

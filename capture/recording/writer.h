@@ -28,15 +28,24 @@ class CaptureWriter {
   // fsync, rename to its final name, fsync of the folder, entry in the manifest.
   // Errors: FailedPrecondition (fewer frames than announced or some unacknowledged).
   virtual absl::Status Publish() = 0;
+  // The same with fewer frames than announced; the file keeps its shape, the rows behind stay
+  // empty. Errors: FailedPrecondition (no frame, or some unacknowledged).
+  virtual absl::Status PublishEarly() = 0;
 };
 
-// Not thread-safe. One capture is open at a time.
+// Not thread-safe. One capture is open at a time, and one writer per recording: manifest.log is
+// locked. Readers may open the recording meanwhile and see what is published.
 class RecordingWriter {
  public:
   // Creates the folder (which must not exist or be empty) and its header, and opens the manifest.
   // `clock` must outlive the writer. Errors: AlreadyExists, the errno of the file system.
   static absl::StatusOr<std::unique_ptr<RecordingWriter>> Create(
       const std::filesystem::path& recording, const RecordingHeader& header, const Clock* clock);
+  // Goes on with a recording that was interrupted; RemainingCaptures() says what is left to take.
+  // Errors: those of RecordingReader::Open; FailedPrecondition (something else records to it;
+  // a capture was under way when it was interrupted: RecoverRecording comes first).
+  static absl::StatusOr<std::unique_ptr<RecordingWriter>> Resume(
+      const std::filesystem::path& recording);
   virtual ~RecordingWriter() = default;
 
   // Reserves the space of `spec.repeats` frames before the first one.

@@ -86,6 +86,7 @@ TEST_F(Run, AcknowledgesInGroups) {
         return absl::OkStatus();
       }
       absl::Status Publish() override { return absl::OkStatus(); }
+      absl::Status PublishEarly() override { return absl::OkStatus(); }
       std::vector<int>& groups;
       int pending = 0;
     };

@@ -56,6 +56,13 @@ class MemoryRecording final : public RecordingWriter {
       capture_->published = true;
       return absl::OkStatus();
     }
+    absl::Status PublishEarly() override {
+      if (capture_->frames.empty() || capture_->acknowledged != capture_->frames.size()) {
+        return absl::FailedPreconditionError("some frames are not acknowledged");
+      }
+      capture_->published = true;
+      return absl::OkStatus();
+    }
 
    private:
     const std::shared_ptr<MemoryCapture> capture_;

@@ -55,11 +55,19 @@ inline RecordingHeader HeaderOf() {
                    .exposure_min_s = 1e-5,
                    .exposure_max_s = 10,
                    .gain_min_db = 0,
-                   .gain_max_db = 24};
+                   .gain_max_db = 24,
+                   .pixel_format = "Mono12p",
+                   .black_level_min = -8,
+                   .black_level_max = 255.5,
+                   .software_trigger = false,
+                   .trigger_lines = {"Line0", "Line2"},
+                   .free_run = true};
   header.geometry = PinholeGeometry{219.8, 3.0000000000000004, 2};
   header.plan.captures = {SpecOf(2), SpecOf(3, 0.1)};
   header.software_version = "0.1.0";
   header.created_real_ns = 1700000000123456789;
+  header.camera_settings = CameraSettings{
+      .trigger = TriggerSource::kLine, .trigger_line = "Line2", .black_level = 16.25};
   return header;
 }
 

@@ -73,6 +73,16 @@ TEST_F(Recording, KeepsEveryFieldOfTheHeader) {
   EXPECT_EQ(header.camera.sensor_size, expected.camera.sensor_size);
   EXPECT_EQ(header.camera.significant_bits, 12);
   EXPECT_EQ(header.camera.exposure_min_s, 1e-5);
+  EXPECT_EQ(header.camera.pixel_format, "Mono12p");
+  EXPECT_EQ(header.camera.black_level_min, -8);
+  EXPECT_EQ(header.camera.black_level_max, 255.5);
+  EXPECT_FALSE(header.camera.software_trigger);
+  EXPECT_EQ(header.camera.trigger_lines, expected.camera.trigger_lines);
+  EXPECT_TRUE(header.camera.free_run);
+  ASSERT_TRUE(header.camera_settings.has_value());
+  EXPECT_EQ(header.camera_settings->trigger, TriggerSource::kLine);
+  EXPECT_EQ(header.camera_settings->trigger_line, "Line2");
+  EXPECT_EQ(header.camera_settings->black_level, 16.25);
   EXPECT_EQ(header.geometry, expected.geometry);
   EXPECT_EQ(header.plan.captures, expected.plan.captures);
   EXPECT_EQ(header.software_version, expected.software_version);
@@ -209,6 +219,14 @@ TEST_F(Recording, RefusesAHeaderThatCouldNotBeReadBack) {
   EXPECT_TRUE(absl::IsInvalidArgument(status));
   EXPECT_THAT(std::string(status.message()), HasSubstr("rig name"));
   EXPECT_FALSE(std::filesystem::exists(path_));
+}
+
+TEST_F(Recording, RefusesATriggerLineWithoutItsSource) {
+  RecordingHeader header = HeaderOf();
+  header.camera_settings->trigger = TriggerSource::kFreeRun;
+  const absl::Status status = RecordingWriter::Create(path_, header, SystemClock()).status();
+  EXPECT_TRUE(absl::IsInvalidArgument(status));
+  EXPECT_THAT(std::string(status.message()), HasSubstr("camera_state trigger_line"));
 }
 
 TEST_F(Recording, TheVisitorEndsTheVisit) {

@@ -1,4 +1,4 @@
-// Still images on disk: the only place that touches OpenCV's codecs (libtiff, libpng).
+// Still images on disk, decoded by libtiff and libpng: counts as stored, or an error.
 #ifndef EYEBOX_CAPTURE_BASE_IMAGE_FILE_H_
 #define EYEBOX_CAPTURE_BASE_IMAGE_FILE_H_
 

@@ -43,7 +43,7 @@ THIRD_PARTY = [
     Library("xxHash", r"xxhash\.h|xxh3\.h", ("capture/*.cc",)),
     Library("OpenCV core", r"opencv2/core(/.*)?(\.hpp)?", ("capture/*.cc", "optics/*.cc")),
     Library("OpenCV imgproc, calib3d", r"opencv2/(imgproc|calib3d)(/.*)?\.hpp", ("optics/*.cc",)),
-    Library("OpenCV imgcodecs", r"opencv2/imgcodecs(/.*)?\.hpp", ("capture/base/image_file.cc",)),
+    Library("libpng", r"png\.h", ("capture/base/png.cc",)),
     # OpenCV decodes 8-bit TIFF by a call that goes on after errors and fills in black.
     Library("libtiff", r"tiffio\.h", ("capture/base/tiff.cc",)),
     Library("Ceres", r"ceres/.*", ("fit/*.cc",)),

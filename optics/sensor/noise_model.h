@@ -11,6 +11,7 @@ struct NoiseModel {
   double gain_dn_per_e = 0;        // K, overall system gain
   double gain_sigma_dn_per_e = 0;  // standard uncertainty of K
   double read_variance_dn2 = 0;    // of one frame, without quantisation
+  double read_variance_sigma_dn2 = 0;
   double quantisation_variance_dn2 = 1.0 / 12;
   double bias_dn = 0;  // median count without light at the shortest dark exposure
   // "pairs of repeats", or "spatial differences": an upper bound then, since the sensor's

@@ -153,6 +153,7 @@ absl::StatusOr<NoiseModel> PhotonTransfer::Fit() {
   noise.gain_dn_per_e = line.slope_dn;
   noise.gain_sigma_dn_per_e = line.slope_sigma_dn;
   noise.read_variance_dn2 = std::max(line.intercept_dn2 - noise.quantisation_variance_dn2, 0.0);
+  noise.read_variance_sigma_dn2 = line.intercept_sigma_dn2;
   noise.bias_dn = bias_median_dn_;
   noise.gain_db = bias_.setting.gain_db;
   noise.noise_source = saw_light_pair_ ? "pairs of repeats" : "spatial differences";

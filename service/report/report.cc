@@ -123,7 +123,7 @@ void AddParameters(Page& page, const ReportInput& input) {
     page.Add("<table>\n<tr><th>quantity</th><th>value</th><th>unit</th></tr>\n");
     for (const ParameterRow& row : table.rows) {
       page.Add(fmt::format("<tr><td>{}</td><td>{}{}</td><td>{}</td></tr>\n", Escape(row.name),
-                           WithSigma(row.value, row.sigma), row.sigma > 0 ? "" : " (held)",
+                           WithSigma(row.value, row.sigma), row.held ? " (held)" : "",
                            Escape(row.unit == "cd/m2" ? "cd/m²" : row.unit)));
     }
     page.Add("</table>\n");

@@ -91,8 +91,9 @@ struct ErrorCurve {
 struct ParameterRow {
   std::string name;
   double value = 0;
-  double sigma = 0;  // 0: held fixed
+  double sigma = 0;  // 0: the value is exact, a setting or itself an uncertainty
   std::string unit;
+  bool held = false;  // a parameter of the model that was not fitted
 };
 
 struct ParameterTable {

@@ -28,6 +28,12 @@ Image<float> MaskAsFloat(const optics::MeasuredImage& image) {
   return mask;
 }
 
+// First order where the variance is known, else what one sigma of it would be the root of.
+double SigmaOfRoot(double variance, double sigma) {
+  const double root = std::sqrt(variance);
+  return variance > sigma ? sigma / (2 * root) : std::sqrt(variance + sigma) - root;
+}
+
 void AddMean(const optics::MeasuredImage& image, v1::ReduceResult& result) {
   double sum = 0;
   double variance_sum = 0;
@@ -122,7 +128,8 @@ absl::StatusOr<v1::ReduceResult> DescribeReduction(const optics::ReducedLevel& l
   AddMean(luminance.image, result);
   auto& parameters = *result.mutable_parameters();
   AddParameter(parameters, "system_gain", noise.gain_dn_per_e, noise.gain_sigma_dn_per_e, "DN/e-");
-  AddParameter(parameters, "temporal_dark_noise", std::sqrt(noise.read_variance_dn2), 0, "DN");
+  AddParameter(parameters, "temporal_dark_noise", std::sqrt(noise.read_variance_dn2),
+               SigmaOfRoot(noise.read_variance_dn2, noise.read_variance_sigma_dn2), "DN");
   AddParameter(parameters, "luminance_scale_relative_sigma", luminance.scale_relative_sigma, 0,
                "1");
   result.set_noise_source(noise.noise_source);

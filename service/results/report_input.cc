@@ -197,7 +197,7 @@ void AddParameters(std::string_view title,
   report::ParameterTable table{std::string(title), {}};
   for (const v1::Parameter& parameter : parameters) {
     table.rows.push_back(
-        {parameter.name(), parameter.value(), parameter.sigma(), parameter.unit()});
+        {parameter.name(), parameter.value(), parameter.sigma(), parameter.unit(), false});
   }
   input.parameters.push_back(std::move(table));
 }
@@ -218,6 +218,7 @@ report::ReportInput MakeReportInput(const RunFindings& findings) {
   input.fit = FitOf(findings);
   AddTables(findings, input);
   AddParameters("Activation at the reference point", result.activation().parameters(), input);
+  for (report::ParameterRow& row : input.parameters.back().rows) row.held = !(row.sigma > 0);
   AddParameters("One exponent for the whole field", result.activation().field().parameters(),
                 input);
   AddParameters("Uniformity", result.uniformity().parameters(), input);

@@ -43,7 +43,7 @@ struct Example {
     input.fit = fit;
     input.certificates = {{"linearize.cube", "hdrp, 32 knots", 0.0065, 0.0031, 0.07, {0.05, 1}}};
     input.error_curves = {{"hdrp, 32", {{0.01, 0.2}, {0.1, 0.005}, {1, -0.004}}}};
-    input.parameters = {{"Activation", {{"gamma", 2.301, 0.004, "1"}, {"v0", 0, 0, "1"}}}};
+    input.parameters = {{"Activation", {{"gamma", 2.301, 0.004, "1"}, {"v0", 0, 0, "1", true}}}};
     input.history = {"subtract_dark(exposure_s=0.1)"};
   }
 };

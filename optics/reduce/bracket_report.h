@@ -34,6 +34,7 @@ struct VarianceBudget {
   double quantisation = 0;
   double dark = 0;  // noise of the dark frames, and shot noise of the dark current
   double flat = 0;
+  double linearity = 0;  // of the linearity correction
 };
 
 struct BracketReport {

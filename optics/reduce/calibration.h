@@ -5,6 +5,7 @@
 //   defects = FindHotPixels(darks)
 //   noise  = PhotonTransfer(shortest dark, defects) <- frames of every capture -> Fit()
 //   dark   = MeasureDark(stack, noise) per setting
+//   linearity, where asked = EstimateLinearity(MeasureExposurePairs(stacks of constant light))
 //   flat   = MeasureFlat(stacks of the flat, calibration so far, known luminance)
 #ifndef EYEBOX_OPTICS_REDUCE_CALIBRATION_H_
 #define EYEBOX_OPTICS_REDUCE_CALIBRATION_H_
@@ -15,6 +16,7 @@
 #include "absl/status/statusor.h"
 #include "optics/photometry/luminance_image.h"
 #include "optics/reduce/frame_stacker.h"
+#include "optics/reduce/linearise.h"
 #include "optics/reduce/measured_image.h"
 #include "optics/sensor/defect_map.h"
 #include "optics/sensor/noise_model.h"
@@ -40,6 +42,7 @@ struct Calibration {
   NoiseModel noise;
   std::vector<DarkFrame> darks;  // one per setting used
   DefectMap defects;
+  std::optional<LinearityCurve> linearity;  // without one, counts are taken as they are
   std::optional<FlatField> flat;
   // Luminance of 1 DN/s, used only where there is no flat of known luminance. Through an unknown
   // flat: of 1 DN/s in the reference region.

@@ -1,6 +1,7 @@
 // Raw counts of one stimulus to luminance, as the method reads:
-// mask saturated and defective pixels, subtract the dark of the same exposure, divide by the
-// exposure time, merge the bracket by inverse variance, divide by the flat, scale to luminance.
+// mask saturated and defective pixels, subtract the dark of the same exposure, linearise where the
+// calibration holds a curve, divide by the exposure time, merge the bracket by inverse variance,
+// divide by the flat, scale to luminance.
 //
 // The flat comes after the merge because its error is common to all exposures: dividing each of
 // them by it would count its variance as independent and average it away.
@@ -22,6 +23,9 @@ namespace eyebox::optics {
 struct ReduceOptions {
   // Blooming spoils neighbours: 1 masks the 3 x 3 same-colour neighbours, 0 none.
   int saturation_dilation = 1;
+  // How far apart those neighbours are: 0 is colour_period_px. 1 masks the neighbours of every
+  // colour: where one colour of a mosaic clips, crosstalk into the others stops growing with it.
+  int saturation_step_px = 0;
   double rail_guard_sigmas = 3;  // expected counts this close to a rail are masked
   int smoothing_radius = 2;      // of the expected signal; 2 is 5 x 5 same-colour neighbours
   int colour_period_px = 2;      // distance of same-colour neighbours; 1 for a grey sensor

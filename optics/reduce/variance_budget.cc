@@ -11,9 +11,11 @@ constexpr size_t kSamples = 1 << 16;
 size_t StrideFor(size_t pixels) { return ((pixels + kSamples - 1) / kSamples) | 1; }
 
 // The terms of one exposure's variance, (DN/s)^2; their sum is `variance`.
-VarianceBudget TermsOf(const NoiseModel& noise, const Setting& setting, int frames,
-                       double expected_dn, double dark_dn, double variance) {
-  const double per_s2 = 1 / (setting.exposure_s * setting.exposure_s);
+VarianceBudget TermsOf(const NoiseModel& noise, const LinearityCurve::Corrected& corrected,
+                       const Setting& setting, int frames, double expected_dn, double dark_dn,
+                       double variance) {
+  const double per_s2_unscaled = 1 / (setting.exposure_s * setting.exposure_s);
+  const double per_s2 = corrected.slope * corrected.slope * per_s2_unscaled;
   const double excess_dn = std::max(expected_dn + dark_dn - noise.bias_dn, 0.0);
   const double light_dn = std::clamp(expected_dn, 0.0, excess_dn);
   const double all = noise.MeanVariance(excess_dn, frames);
@@ -22,7 +24,8 @@ VarianceBudget TermsOf(const NoiseModel& noise, const Setting& setting, int fram
   terms.photon = noise.gain_dn_per_e * light_dn / frames * per_s2;
   terms.read = noise.read_variance_dn2 / frames * per_s2;
   terms.quantisation = (all - shot_and_read) * per_s2;
-  terms.dark = variance - terms.photon - terms.read - terms.quantisation;
+  terms.linearity = corrected.variance_dn2 * per_s2_unscaled;
+  terms.dark = variance - terms.photon - terms.read - terms.quantisation - terms.linearity;
   return terms;
 }
 
@@ -32,12 +35,16 @@ void AddScaled(const VarianceBudget& terms, double factor, VarianceBudget& sum) 
   sum.quantisation += factor * terms.quantisation;
   sum.dark += factor * terms.dark;
   sum.flat += factor * terms.flat;
+  sum.linearity += factor * terms.linearity;
 }
 
 }  // namespace
 
-VarianceBudgetMeter::VarianceBudgetMeter(const NoiseModel& noise, ImageSize size)
+VarianceBudgetMeter::VarianceBudgetMeter(const NoiseModel& noise,
+                                         const std::optional<LinearityCurve>& linearity,
+                                         ImageSize size)
     : noise_(noise),
+      linearity_(linearity),
       stride_(StrideFor(size.PixelCount())),
       pixels_((size.PixelCount() + stride_ - 1) / stride_) {}
 
@@ -48,9 +55,12 @@ void VarianceBudgetMeter::Add(const Exposure& exposure, const MeasuredImage& rat
     const size_t i = k * stride_;
     if (rate.mask.pixels()[i] != 0) continue;
     const double variance = rate.variance.pixels()[i];
-    const VarianceBudget terms = TermsOf(noise_, setting, exposure.light->frames,
-                                         expected_rate_dn_s.pixels()[i] * setting.exposure_s,
-                                         exposure.dark->image_dn.value.pixels()[i], variance);
+    const double expected_dn = expected_rate_dn_s.pixels()[i] * setting.exposure_s;
+    const LinearityCurve::Corrected corrected =
+        linearity_ ? linearity_->At(expected_dn) : LinearityCurve::Corrected{};
+    const VarianceBudget terms =
+        TermsOf(noise_, corrected, setting, exposure.light->frames, expected_dn,
+                exposure.dark->image_dn.value.pixels()[i], variance);
     AddScaled(terms, 1 / (variance * variance), pixels_[k].terms);
     pixels_[k].weight += 1 / variance;
   }

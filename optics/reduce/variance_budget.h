@@ -3,11 +3,13 @@
 #define EYEBOX_OPTICS_REDUCE_VARIANCE_BUDGET_H_
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "capture/base/image.h"
 #include "optics/reduce/bracket_report.h"
 #include "optics/reduce/expected_rate.h"
+#include "optics/reduce/linearise.h"
 #include "optics/reduce/measured_image.h"
 #include "optics/sensor/noise_model.h"
 
@@ -17,7 +19,8 @@ namespace eyebox::optics {
 // T of the exposures' variances v makes up sum(w^2 T) / sum(w) of the merged variance 1/sum(w).
 class VarianceBudgetMeter {
  public:
-  VarianceBudgetMeter(const NoiseModel& noise, ImageSize size);
+  VarianceBudgetMeter(const NoiseModel& noise, const std::optional<LinearityCurve>& linearity,
+                      ImageSize size);
 
   // An exposure and its rate image in DN/s, as it enters the merge.
   void Add(const Exposure& exposure, const MeasuredImage& rate,
@@ -33,6 +36,7 @@ class VarianceBudgetMeter {
   };
 
   NoiseModel noise_;
+  std::optional<LinearityCurve> linearity_;
   size_t stride_;
   std::vector<PixelSums> pixels_;
 };

@@ -45,6 +45,50 @@ absl::Status CheckDarks(std::span<const Stack> darks) {
   return absl::OkStatus();
 }
 
+constexpr int kNeighbourhoodRadius = 2;
+
+// Median of the 5 x 5 same-colour neighbours, without those beyond the edges. A mean would let one
+// dead pixel mark its neighbours.
+class NeighbourMedian {
+ public:
+  NeighbourMedian(const Image<float>& image, int period) : image_(image), period_(period) {}
+
+  float At(int x, int y) {
+    neighbours_.clear();
+    const auto [width, height] = image_.size();
+    for (int dy = -kNeighbourhoodRadius; dy <= kNeighbourhoodRadius; ++dy) {
+      const int row = y + dy * period_;
+      if (row < 0 || row >= height) continue;
+      for (int dx = -kNeighbourhoodRadius; dx <= kNeighbourhoodRadius; ++dx) {
+        const int column = x + dx * period_;
+        if (column >= 0 && column < width) neighbours_.push_back(image_.at(column, row));
+      }
+    }
+    const auto middle = neighbours_.begin() + static_cast<std::ptrdiff_t>(neighbours_.size() / 2);
+    std::nth_element(neighbours_.begin(), middle, neighbours_.end());
+    return *middle;
+  }
+
+ private:
+  const Image<float>& image_;
+  int period_;
+  std::vector<float> neighbours_;
+};
+
+// Relative to their neighbours' median, minus 1; 0 where there is no signal to compare with.
+std::vector<float> Departures(const Image<float>& signal_dn, int period) {
+  NeighbourMedian median(signal_dn, period);
+  std::vector<float> departures;
+  departures.reserve(signal_dn.pixels().size());
+  for (int y = 0; y < signal_dn.size().height_px; ++y) {
+    for (int x = 0; x < signal_dn.size().width_px; ++x) {
+      const float around = median.At(x, y);
+      departures.push_back(around >= 1 ? signal_dn.at(x, y) / around - 1 : 0);
+    }
+  }
+  return departures;
+}
+
 }  // namespace
 
 absl::StatusOr<DefectMap> FindHotPixels(std::span<const Stack> darks,
@@ -76,6 +120,34 @@ absl::StatusOr<DefectMap> FindHotPixels(std::span<const Stack> darks,
   map.hot_share = static_cast<double>(std::count(defective.begin(), defective.end(), 1)) /
                   static_cast<double>(defective.size());
   return map;
+}
+
+absl::Status AddDeadPixels(const Stack& bright, const Stack& dark, const DefectOptions& options,
+                           DefectMap& map) {
+  if (bright.size() != dark.size() || bright.size() != map.defective.size()) {
+    return BadInput("bright stack", "its size differs from the dark's or the defect map's",
+                    "use stacks of one region of interest");
+  }
+  Image<float> signal_dn = bright.mean_dn;
+  double sum = 0;
+  for (size_t i = 0; i < signal_dn.pixels().size(); ++i) {
+    signal_dn.pixels()[i] -= dark.mean_dn.pixels()[i];
+    sum += signal_dn.pixels()[i];
+  }
+  const std::vector<float> departures = Departures(signal_dn, options.colour_period_px);
+  std::vector<float> sizes(departures.size());
+  std::transform(departures.begin(), departures.end(), sizes.begin(),
+                 [](float departure) { return std::abs(departure); });
+  const double mean_dn = std::max(sum / static_cast<double>(sizes.size()), 1.0);
+  const double sigma = std::max(kMadToSigma * Median(sizes), kQuantisationSigmaDn / mean_dn);
+  size_t dead = 0;
+  for (size_t i = 0; i < sizes.size(); ++i) {
+    if (!(sizes[i] > options.threshold * sigma)) continue;
+    ++dead;
+    map.defective.pixels()[i] = 1;
+  }
+  map.dead_share = static_cast<double>(dead) / static_cast<double>(sizes.size());
+  return absl::OkStatus();
 }
 
 }  // namespace eyebox::optics

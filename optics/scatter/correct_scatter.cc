@@ -1,0 +1,250 @@
+#include "optics/scatter/correct_scatter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "capture/base/status.h"
+#include "optics/scatter/block_image.h"
+#include "optics/scatter/kernel_grid.h"
+#include "optics/scatter/spread_light.h"
+
+namespace eyebox::optics {
+namespace {
+
+constexpr double kLeastStructure = 0.01;  // of the noise: an image without any is not smoothed away
+constexpr double kRounding = 3e-7;        // of the brightest pixel, float32 through two transforms
+constexpr int kGainRows = 8;              // every so many frequencies are asked for the noise gain
+constexpr float kSmallest = 1e-12F;       // keeps 0 / 0 out where W vanishes
+
+// 2 - 2 cos of the frequencies 0 .. 1/2 per pixel.
+std::vector<float> Roughness(int frequencies) {
+  std::vector<float> roughness(frequencies);
+  for (int k = 0; k < frequencies; ++k) {
+    const double angle = std::numbers::pi * k / std::max(frequencies - 1, 1);
+    roughness[k] = static_cast<float>(2 - 2 * std::cos(angle));
+  }
+  return roughness;
+}
+
+absl::Status CheckPixels(const MeasuredImage& image) {
+  const auto value = image.value.pixels();
+  const auto variance = image.variance.pixels();
+  const auto mask = image.mask.pixels();
+  for (size_t i = 0; i < value.size(); ++i) {
+    const bool sound = std::isfinite(value[i]) && variance[i] >= 0 && std::isfinite(variance[i]);
+    if (mask[i] != 0 || sound) continue;
+    const size_t width = image.size().width_px;
+    return BadInput(absl::StrCat("image, pixel (", i % width, ", ", i / width, ")"),
+                    absl::StrCat("value ", value[i], ", variance ", variance[i]),
+                    "mask it, or give finite numbers");
+  }
+  return absl::OkStatus();
+}
+
+struct Statistics {
+  size_t valid = 0;
+  double light = 0;           // sum
+  double noise_variance = 0;  // mean
+  double brightest = 0;
+};
+
+Statistics Survey(const MeasuredImage& image) {
+  Statistics found;
+  const auto value = image.value.pixels();
+  const auto mask = image.mask.pixels();
+  for (size_t i = 0; i < value.size(); ++i) {
+    if (mask[i] != 0) continue;
+    ++found.valid;
+    found.light += value[i];
+    found.noise_variance += image.variance.pixels()[i];
+    found.brightest = std::max<double>(found.brightest, std::abs(value[i]));
+  }
+  if (found.valid > 0) found.noise_variance /= static_cast<double>(found.valid);
+  return found;
+}
+
+// Of an image that is dark outside, as the transform sees it.
+double MeanSquaredGradient(const Image<float>& image) {
+  const auto [width, height] = image.size();
+  double sum = 0;
+  for (int y = 0; y < height; ++y) {
+    const auto row = image.row(y);
+    const auto above = image.row(std::max(y - 1, 0));
+    float squares = row[0] * row[0] + row[width - 1] * row[width - 1];
+    for (int x = 1; x < width; ++x) squares += (row[x] - row[x - 1]) * (row[x] - row[x - 1]);
+    for (int x = 0; x < width; ++x) squares += (row[x] - above[x]) * (row[x] - above[x]);
+    sum += squares;
+  }
+  for (const float value : image.row(0)) sum += static_cast<double>(value) * value;
+  for (const float value : image.row(height - 1)) sum += static_cast<double>(value) * value;
+  return sum / static_cast<double>(image.size().PixelCount());
+}
+
+// Noise over signal, both per unit of 1 / frequency^2. Noise itself has a gradient: 4 variances.
+double ChooseRegularisation(const Image<float>& image, double noise_variance) {
+  if (!(noise_variance > 0)) return 0;
+  const double noise_gradient = 4 * noise_variance;
+  const double structure = MeanSquaredGradient(image) - noise_gradient;
+  return noise_variance / std::max(structure, kLeastStructure * noise_gradient);
+}
+
+}  // namespace
+
+absl::Status CorrectionOptions::Validate() const {
+  if (!(glare_relative_sigma >= 0 && std::isfinite(glare_relative_sigma))) {
+    return BadInput("glare_relative_sigma", absl::StrCat(glare_relative_sigma),
+                    "give a standard uncertainty of at least 0");
+  }
+  if (!(floor_tolerance > 0 && std::isfinite(floor_tolerance))) {
+    return BadInput("floor_tolerance", absl::StrCat(floor_tolerance), "give a share above 0");
+  }
+  if (!(floor_sigmas > 0 && std::isfinite(floor_sigmas))) {
+    return BadInput("floor_sigmas", absl::StrCat(floor_sigmas), "give a number above 0");
+  }
+  return absl::OkStatus();
+}
+
+// What the blocks say of the full image.
+struct ScatterCorrector::Wide {
+  Image<float> edge;          // added to the deconvolved light
+  Image<float> far_variance;  // added to the variance
+  Image<float> guessed;       // glare of the light of masked pixels; empty where none is
+  double near_gain = 1;       // of a pixel's own noise
+};
+
+absl::StatusOr<ScatterCorrector> ScatterCorrector::Create(const ScatterKernel& kernel,
+                                                          ImageSize size, double pitch_deg,
+                                                          const CorrectionOptions& options) {
+  EYEBOX_RETURN_IF_ERROR(kernel.Validate());
+  EYEBOX_RETURN_IF_ERROR(CheckGrid(size, pitch_deg));
+  EYEBOX_RETURN_IF_ERROR(options.Validate());
+  return ScatterCorrector(kernel, size, pitch_deg, options);
+}
+
+ScatterCorrector::ScatterCorrector(const ScatterKernel& kernel, ImageSize size, double pitch_deg,
+                                   const CorrectionOptions& options)
+    : kernel_(kernel),
+      options_(options),
+      torus_(size),
+      whole_(torus_.Transfer(SampleKernel(RadialWeight(kernel), pitch_deg, size))),
+      core_(torus_.Transfer(SampleKernel(RadialWeight(CoreOf(kernel)), pitch_deg, size))),
+      wide_glare_(kernel, size, pitch_deg) {}
+
+// Returns the noise gain: the mean over frequencies of the squared gain.
+double ScatterCorrector::Deconvolve(double lambda, Image<float>& light) {
+  const std::vector<float> across = Roughness(torus_.frequencies().width_px);
+  const std::vector<float> down = Roughness(torus_.frequencies().height_px);
+  const auto strength = static_cast<float>(lambda);
+  const bool keep_core = options_.keep_core;
+  double squares = 0;
+  size_t asked = 0;
+  torus_.Filter(light, [&](int y_frequency, std::span<float> gain) {
+    const float* const whole = whole_.row(y_frequency).data();
+    const float* const core = core_.row(y_frequency).data();
+    const float* const rough = across.data();
+    const float rough_down = down[y_frequency];
+    for (size_t j = 0; j < gain.size(); ++j) {
+      const float lost = std::max(1 - core[j] * core[j], 0.0F);
+      const float penalty = strength * (rough[j] + rough_down) * lost;
+      const float target = keep_core ? core[j] : 1.0F;
+      gain[j] = target * whole[j] / (whole[j] * whole[j] + penalty + kSmallest);
+    }
+    if (y_frequency % kGainRows != 0) return;
+    for (const float g : gain) squares += static_cast<double>(g) * g;
+    asked += gain.size();
+  });
+  return squares / static_cast<double>(asked);
+}
+
+ScatterCorrector::Wide ScatterCorrector::Spread(const MeasuredImage& reading,
+                                                const Image<float>& filled, bool any_masked) {
+  const int block = wide_glare_.block_px();
+  Wide wide;
+  wide.edge = wide_glare_.EdgeCorrection(BlockMeans(filled, block));
+  wide.far_variance = wide_glare_.FarVariance(BlockMeans(reading.variance, block));
+  if (!any_masked) return wide;
+  Image<float> guessed(filled.size());
+  for (size_t i = 0; i < guessed.pixels().size(); ++i) {
+    guessed.pixels()[i] = reading.mask.pixels()[i] != 0 ? std::abs(filled.pixels()[i]) : 0.0F;
+  }
+  wide.guessed = wide_glare_.GlareOf(BlockMeans(guessed, block));
+  return wide;
+}
+
+// `correction` arrives with the deconvolved light as its value and the mask of the reading.
+void ScatterCorrector::Finish(const Wide& wide, const MeasuredImage& reading,
+                              const Image<float>& filled, double brightest,
+                              ScatterCorrection& correction) const {
+  const int block = wide_glare_.block_px();
+  const auto [width, height] = reading.size();
+  const auto near_gain = static_cast<float>(wide.near_gain);
+  const auto kernel_square = static_cast<float>(std::pow(options_.glare_relative_sigma, 2));
+  const auto rounding_square = static_cast<float>(std::pow(kRounding * brightest, 2));
+  const auto reach = static_cast<float>(options_.floor_sigmas / options_.floor_tolerance);
+  std::vector<float> edge(width), far(width), guessed(width);
+  for (int y = 0; y < height; ++y) {
+    ExpandRow(wide.edge, block, y, edge);
+    ExpandRow(wide.far_variance, block, y, far);
+    if (!wide.guessed.empty()) ExpandRow(wide.guessed, block, y, guessed);
+    const auto before = filled.row(y);
+    const auto noise = reading.variance.row(y);
+    const auto value = correction.luminance.image.value.row(y);
+    const auto variance = correction.luminance.image.variance.row(y);
+    const auto floor = correction.floor.row(y);
+    for (int x = 0; x < width; ++x) {
+      value[x] += edge[x];
+      variance[x] = near_gain * noise[x] + far[x];
+      const float glare = before[x] - value[x];
+      floor[x] = reach * std::sqrt(variance[x] + kernel_square * glare * glare +
+                                   guessed[x] * guessed[x] + rounding_square);
+    }
+  }
+}
+
+absl::StatusOr<ScatterCorrection> ScatterCorrector::Correct(const LuminanceImage& reading) {
+  const MeasuredImage& image = reading.image;
+  if (image.size() != torus_.window()) {
+    return BadInput("image", absl::StrCat(image.size().width_px, " x ", image.size().height_px),
+                    absl::StrCat("give ", torus_.window().width_px, " x ",
+                                 torus_.window().height_px, " pixels, as prepared for"));
+  }
+  EYEBOX_RETURN_IF_ERROR(CheckPixels(image));
+  const Statistics found = Survey(image);
+  ScatterCorrection correction;
+  correction.luminance = reading;
+  correction.floor = Image<float>(image.size(), kNoValue);
+  if (found.valid == 0) return correction;
+
+  Image<float> filled = image.value;
+  const bool any_masked = FillMasked(image.mask, filled);
+  correction.regularisation = ChooseRegularisation(filled, found.noise_variance);
+  Image<float>& light = correction.luminance.image.value;
+  light = filled;
+  correction.noise_gain = Deconvolve(correction.regularisation, light);
+  Wide wide = Spread(image, filled, any_masked);
+  wide.near_gain = std::max(correction.noise_gain - wide_glare_.FarNoiseGain(), 0.0);
+  Finish(wide, image, filled, found.brightest, correction);
+  BlankMaskedPixels(correction.luminance.image);
+
+  size_t below = 0;
+  for (size_t i = 0; i < light.pixels().size(); ++i) {
+    if (image.mask.pixels()[i] != 0) {
+      correction.floor.pixels()[i] = kNoValue;
+      continue;
+    }
+    correction.light_after += light.pixels()[i];
+    if (light.pixels()[i] < correction.floor.pixels()[i]) ++below;
+  }
+  correction.light_before = found.light;
+  correction.below_floor_share = static_cast<double>(below) / static_cast<double>(found.valid);
+  correction.luminance.image.history.push_back(absl::StrCat(
+      "CorrectScatter(tail ", kernel_.tail_share, ", pedestal ", kernel_.pedestal_share,
+      ", lambda ", correction.regularisation, options_.keep_core ? ", core kept)" : ")"));
+  return correction;
+}
+
+}  // namespace eyebox::optics

@@ -4,12 +4,13 @@
 #ifndef EYEBOX_TESTS_OPTICS_EMVA1288_CAMERA_H_
 #define EYEBOX_TESTS_OPTICS_EMVA1288_CAMERA_H_
 
+#include <gtest/gtest.h>
+#include <png.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <random>
 #include <string>
 #include <vector>
@@ -71,6 +72,17 @@ class Emva1288Camera {
   std::normal_distribution<double> normal_;
 };
 
+inline void WriteGreyPng(const std::filesystem::path& file, const Image<uint16_t>& image) {
+  png_image header = {};
+  header.version = PNG_IMAGE_VERSION;
+  header.width = static_cast<png_uint_32>(image.size().width_px);
+  header.height = static_cast<png_uint_32>(image.size().height_px);
+  header.format = PNG_FORMAT_LINEAR_Y;  // 16 bits, stored as they are
+  header.flags = PNG_IMAGE_FLAG_FAST;
+  ASSERT_NE(png_image_write_to_file(&header, file.c_str(), 0, image.pixels().data(), 0, nullptr), 0)
+      << header.message;
+}
+
 // Writes folder/series.txt and its images as 16-bit PNG, set by set.
 class DescriptorWriter {
  public:
@@ -107,9 +119,7 @@ class DescriptorWriter {
     for (int k = 0; k < images; ++k) {
       Image<uint16_t> image = camera_.Expose(photons, exposure_s);
       const std::string name = "img_" + std::to_string(++count_) + ".png";
-      const cv::Mat view(image.size().height_px, image.size().width_px, CV_16UC1,
-                         image.pixels().data());
-      cv::imwrite((folder_ / "images" / name).string(), view, {cv::IMWRITE_PNG_COMPRESSION, 0});
+      WriteGreyPng(folder_ / "images" / name, image);
       text_ += "i images\\" + name + "\n";
     }
   }

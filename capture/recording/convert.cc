@@ -146,6 +146,8 @@ v1::Rig ToProto(const RigConfig& rig) {
   proto.set_name(rig.name);
   proto.set_camera_uri(rig.camera_uri);
   proto.set_seed(rig.seed);
+  proto.set_photodiode_uri(rig.photodiode_uri);
+  proto.set_trigger_uri(rig.trigger_uri);
   return proto;
 }
 
@@ -219,7 +221,11 @@ absl::StatusOr<RigConfig> FromProto(const v1::Rig& proto, const std::string& whe
   if (proto.camera_uri().empty()) {
     return BadInput(where + " camera_uri", "is empty", "give for example \"sim:rift-s-like\"");
   }
-  return RigConfig{.name = proto.name(), .camera_uri = proto.camera_uri(), .seed = proto.seed()};
+  return RigConfig{.name = proto.name(),
+                   .camera_uri = proto.camera_uri(),
+                   .seed = proto.seed(),
+                   .photodiode_uri = proto.photodiode_uri(),
+                   .trigger_uri = proto.trigger_uri()};
 }
 
 absl::StatusOr<CameraInfo> FromProto(const v1::CameraInfo& proto, const std::string& where) {

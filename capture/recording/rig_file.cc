@@ -1,9 +1,11 @@
 #include "capture/recording/rig_file.h"
 
 #include <string>
+#include <vector>
 
 #include "capture/base/file.h"
 #include "capture/base/status.h"
+#include "capture/photodiode/photodiode.h"
 #include "capture/recording/convert.h"
 #include "capture/recording/text_format.h"
 
@@ -12,14 +14,21 @@ namespace {
 
 constexpr size_t kLargestRigFile = size_t{1} << 20;
 
-absl::Status CheckScheme(const std::string& where, const std::string& uri) {
+absl::Status CheckScheme(const std::string& where, const std::string& uri,
+                         const std::vector<std::string>& schemes) {
   std::string known;
-  for (const std::string& scheme : CameraSchemes()) {
+  for (const std::string& scheme : schemes) {
     if (uri.starts_with(scheme + ":")) return absl::OkStatus();
     known += " " + scheme + ":";
   }
-  return BadInput(where + " camera_uri", "is '" + uri + "', of no scheme that is known here",
+  return BadInput(where, "is '" + uri + "', of no scheme that is known here",
                   "start it with one of" + known);
+}
+
+absl::Status CheckTrigger(const std::string& where, const std::string& uri) {
+  if (uri.starts_with("gpiochip") || uri.starts_with("sim:")) return absl::OkStatus();
+  return BadInput(where, "is '" + uri + "', of no scheme that is known here",
+                  "start it with gpiochipN: or sim:");
 }
 
 }  // namespace
@@ -29,7 +38,15 @@ absl::StatusOr<RigConfig> ReadRigFile(const std::filesystem::path& file) {
   v1::Rig proto;
   EYEBOX_RETURN_IF_ERROR(ParseText(text, file, proto));
   EYEBOX_ASSIGN_OR_RETURN(RigConfig rig, FromProto(proto, file.string()));
-  EYEBOX_RETURN_IF_ERROR(CheckScheme(file.string(), rig.camera_uri));
+  const std::string where = file.string() + " ";
+  EYEBOX_RETURN_IF_ERROR(CheckScheme(where + "camera_uri", rig.camera_uri, CameraSchemes()));
+  if (!rig.photodiode_uri.empty()) {
+    EYEBOX_RETURN_IF_ERROR(
+        CheckScheme(where + "photodiode_uri", rig.photodiode_uri, PhotodiodeSchemes()));
+  }
+  if (!rig.trigger_uri.empty()) {
+    EYEBOX_RETURN_IF_ERROR(CheckTrigger(where + "trigger_uri", rig.trigger_uri));
+  }
   return rig;
 }
 

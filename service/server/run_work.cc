@@ -20,7 +20,11 @@ RunOptions OptionsOf(const v1::CreateRunRequest& request) {
 }
 
 capture::RigConfig ConfigOf(const v1::Rig& rig) {
-  return {.name = rig.name(), .camera_uri = rig.camera_uri(), .seed = rig.seed()};
+  return {.name = rig.name(),
+          .camera_uri = rig.camera_uri(),
+          .seed = rig.seed(),
+          .photodiode_uri = rig.photodiode_uri(),
+          .trigger_uri = rig.trigger_uri()};
 }
 
 // A client knows its recording by name; how the server got hold of it says nothing.

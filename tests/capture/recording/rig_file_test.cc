@@ -64,6 +64,17 @@ TEST_F(RigFile, OfAnUnknownSchemeIsRefusedAndTheKnownAreListed) {
   EXPECT_THAT(Refusal("name: \"a\""), HasSubstr("camera_uri"));
 }
 
+TEST_F(RigFile, NamesPhotodiodeAndTrigger) {
+  const std::string camera = "name: \"a\" camera_uri: \"sim:rift-s-like\" ";
+  const auto rig =
+      Read(camera + "photodiode_uri: \"sim:strobe-90hz\" trigger_uri: \"gpiochip0:17\"");
+  ASSERT_TRUE(rig.ok()) << rig.status();
+  EXPECT_EQ(rig->photodiode_uri, "sim:strobe-90hz");
+  EXPECT_EQ(rig->trigger_uri, "gpiochip0:17");
+  EXPECT_THAT(Refusal(camera + "photodiode_uri: \"adc:0\""), HasSubstr("iio: serial: sim:"));
+  EXPECT_THAT(Refusal(camera + "trigger_uri: \"button\""), HasSubstr("trigger_uri"));
+}
+
 TEST_F(RigFile, ThatIsMissingIsNotFound) {
   EXPECT_TRUE(absl::IsNotFound(ReadRigFile(folder_ / "none").status()));
 }

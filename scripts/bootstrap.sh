@@ -22,6 +22,7 @@ check_packages=(
   aravis-tools ccache clang-format clang-tidy git
   libbenchmark-dev libboost-dev libgmock-dev libgmp-dev libgtest-dev libmpfr-dev librapidcheck-dev
   python3 python3-grpcio python3-h5py python3-numpy python3-protobuf
+  strace
 )
 
 fail() {

@@ -83,17 +83,18 @@ class FileBuilder {
   absl::Status AddRecords() {
     EYEBOX_RETURN_IF_ERROR(Opened());
     const Hdf5Handle type = RecordType();
-    EYEBOX_ASSIGN_OR_RETURN(const Hdf5Handle records,
+    EYEBOX_ASSIGN_OR_RETURN(Hdf5Handle records,
                             Dataset("/frame_records", type.id(),
                                     {static_cast<hsize_t>(shape_.frame_count)}, Contiguous()));
-    return Offset(records, layout_.records_offset_bytes);
+    EYEBOX_RETURN_IF_ERROR(Offset(records, layout_.records_offset_bytes));
+    return Closed(records, "/frame_records");
   }
 
   absl::Status AddContiguousFrames() {
-    EYEBOX_ASSIGN_OR_RETURN(
-        const Hdf5Handle frames,
-        Dataset("/frames", H5T_STD_U16LE, FramesDimensions(shape_), Contiguous()));
-    return Offset(frames, layout_.frames_offset_bytes);
+    EYEBOX_ASSIGN_OR_RETURN(Hdf5Handle frames, Dataset("/frames", H5T_STD_U16LE,
+                                                       FramesDimensions(shape_), Contiguous()));
+    EYEBOX_RETURN_IF_ERROR(Offset(frames, layout_.frames_offset_bytes));
+    return Closed(frames, "/frames");
   }
 
   absl::Status AddPackedFrames() {
@@ -120,11 +121,10 @@ class FileBuilder {
   }
 
   absl::Status AddMeta(const MetaStrings& meta) {
-    const Hdf5Handle group(H5Gcreate2(Id(), "/meta", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                           H5Gclose);
+    Hdf5Handle group(H5Gcreate2(Id(), "/meta", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
     EYEBOX_HDF5(group.id(), "cannot create /meta");
     for (const auto& [name, text] : meta) EYEBOX_RETURN_IF_ERROR(AddString(group, name, text));
-    return absl::OkStatus();
+    return Closed(group, "/meta");
   }
 
   absl::StatusOr<CaptureFileLayout> Finish() {
@@ -197,13 +197,18 @@ class FileBuilder {
     H5Tset_cset(type.id(), H5T_CSET_UTF8);
     const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
     const Hdf5Handle creation = Contiguous();
-    const Hdf5Handle dataset(H5Dcreate2(group.id(), name.c_str(), type.id(), space.id(),
-                                        H5P_DEFAULT, creation.id(), H5P_DEFAULT),
-                             H5Dclose);
+    Hdf5Handle dataset(H5Dcreate2(group.id(), name.c_str(), type.id(), space.id(), H5P_DEFAULT,
+                                  creation.id(), H5P_DEFAULT),
+                       H5Dclose);
     EYEBOX_HDF5(dataset.id(), "cannot create /meta/" + name);
     EYEBOX_HDF5(H5Dwrite(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()),
                 "cannot write /meta/" + name);
-    return absl::OkStatus();
+    return Closed(dataset, "/meta/" + name);
+  }
+
+  // Closing writes what libhdf5 still holds of the dataset.
+  absl::Status Closed(Hdf5Handle& dataset, const std::string& name) const {
+    return dataset.Close() ? absl::OkStatus() : Refused(file_, "cannot write " + name);
   }
 
   const std::filesystem::path file_;

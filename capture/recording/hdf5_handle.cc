@@ -17,7 +17,13 @@ herr_t KeepInnermost(unsigned, const H5E_error2_t* error, void* text) {
 
 }  // namespace
 
-Hdf5Lock::Hdf5Lock() : lock_(Mutex()) { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+// Every file is closed by its owner. One that could not be, because its disk refused, stays half
+// open, and libhdf5 would crash over it when the process ends.
+Hdf5Lock::Hdf5Lock() : lock_(Mutex()) {
+  static const herr_t no_cleanup_at_exit = H5dont_atexit();
+  static_cast<void>(no_cleanup_at_exit);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 std::string Hdf5Complaint() {
   std::string text;

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kBinsPerOctave = 8;
 constexpr double kFewestPixels = 100;
+constexpr float kOutshineFactor = 2;
 
 struct BinSums {
   double pixels = 0;
@@ -23,11 +24,13 @@ struct BinSums {
 };
 
 void AddPairs(const MeasuredImage& shorter, const MeasuredImage& longer, double ratio,
-              const Image<float>& expected_rate_dn_s, std::vector<LinearityPair>& pairs) {
+              const Image<float>& expected_rate_dn_s, const Image<uint8_t>& outshone,
+              std::vector<LinearityPair>& pairs) {
   std::map<int, BinSums> bins;
   const auto expected = expected_rate_dn_s.pixels();
   for (size_t i = 0; i < expected.size(); ++i) {
-    if ((shorter.mask.pixels()[i] | longer.mask.pixels()[i]) != 0 || !(expected[i] > 0)) continue;
+    if ((shorter.mask.pixels()[i] | longer.mask.pixels()[i] | outshone.pixels()[i]) != 0) continue;
+    if (!(expected[i] > 0)) continue;
     BinSums& bin = bins[static_cast<int>(std::floor(kBinsPerOctave * std::log2(expected[i])))];
     ++bin.pixels;
     bin.shorter += shorter.value.pixels()[i];
@@ -45,6 +48,22 @@ void AddPairs(const MeasuredImage& shorter, const MeasuredImage& longer, double 
 
 }  // namespace
 
+Image<uint8_t> OutshonePixels(const Image<float>& expected_rate_dn_s) {
+  const auto [width, height] = expected_rate_dn_s.size();
+  Image<uint8_t> outshone(expected_rate_dn_s.size());
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const float limit = kOutshineFactor * std::max(expected_rate_dn_s.at(x, y), 0.0F);
+      for (int row = std::max(y - 1, 0); row <= std::min(y + 1, height - 1); ++row) {
+        for (int column = std::max(x - 1, 0); column <= std::min(x + 1, width - 1); ++column) {
+          if (expected_rate_dn_s.at(column, row) > limit) outshone.at(x, y) = 1;
+        }
+      }
+    }
+  }
+  return outshone;
+}
+
 absl::StatusOr<std::vector<LinearityPair>> MeasureExposurePairs(std::span<const Stack> exposures,
                                                                 const Calibration& calibration,
                                                                 const ReduceOptions& options) {
@@ -57,13 +76,14 @@ absl::StatusOr<std::vector<LinearityPair>> MeasureExposurePairs(std::span<const 
                           OrderBracket(exposures, raw, strict));
   const Image<float> expected =
       ExpectedRate(bracket, raw, {options.smoothing_radius, options.colour_period_px});
+  const Image<uint8_t> outshone = OutshonePixels(expected);
   std::vector<LinearityPair> pairs;
   MeasuredImage shorter;
   double shorter_s = 0;
   for (const Exposure& exposure : bracket) {
     const double exposure_s = exposure.light->setting.exposure_s;
     EYEBOX_ASSIGN_OR_RETURN(MeasuredImage counts, CountsOf(exposure, expected, raw, strict));
-    if (shorter_s > 0) AddPairs(shorter, counts, exposure_s / shorter_s, expected, pairs);
+    if (shorter_s > 0) AddPairs(shorter, counts, exposure_s / shorter_s, expected, outshone, pairs);
     shorter = std::move(counts);
     shorter_s = exposure_s;
   }

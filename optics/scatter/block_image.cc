@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <optional>
 #include <vector>
 
 namespace eyebox::optics {
 namespace {
+
+constexpr int kDirectLevels = 3;  // blocks up to 8 pixels wide are summed where they are needed
 
 // Between which blocks a pixel lies, and how far towards the second.
 struct Between {
@@ -40,14 +42,71 @@ ValidSums Halve(const ValidSums& fine) {
   return coarse;
 }
 
+// Over the blocks of 2^kDirectLevels pixels.
 ValidSums SumsOf(const Image<uint8_t>& mask, const Image<float>& image) {
-  ValidSums sums{Image<float>(image.size()), Image<float>(image.size())};
-  for (size_t i = 0; i < image.pixels().size(); ++i) {
-    const bool valid = mask.pixels()[i] == 0;
-    sums.sum.pixels()[i] = valid ? image.pixels()[i] : 0;
-    sums.count.pixels()[i] = valid ? 1 : 0;
+  const ImageSize size = BlockGridSize(image.size(), 1 << kDirectLevels);
+  ValidSums sums{Image<float>(size), Image<float>(size)};
+  for (int y = 0; y < image.size().height_px; ++y) {
+    for (int x = 0; x < image.size().width_px; ++x) {
+      if (mask.at(x, y) != 0) continue;
+      sums.sum.at(x >> kDirectLevels, y >> kDirectLevels) += image.at(x, y);
+      sums.count.at(x >> kDirectLevels, y >> kDirectLevels) += 1;
+    }
   }
   return sums;
+}
+
+// Mean of the valid pixels of the block of 2^level pixels around (x, y).
+std::optional<float> MeanOfBlock(const Image<uint8_t>& mask, const Image<float>& image, int x,
+                                 int y, int level) {
+  const int left = (x >> level) << level;
+  const int top = (y >> level) << level;
+  float sum = 0;
+  float count = 0;
+  for (int v = top; v < std::min(top + (1 << level), image.size().height_px); ++v) {
+    for (int u = left; u < std::min(left + (1 << level), image.size().width_px); ++u) {
+      if (mask.at(u, v) != 0) continue;
+      sum += image.at(u, v);
+      count += 1;
+    }
+  }
+  if (count > 0) return sum / count;
+  return std::nullopt;
+}
+
+// The same for large blocks, from sums that are made once they are needed.
+class LargeBlocks {
+ public:
+  LargeBlocks(const Image<uint8_t>& mask, const Image<float>& image) : mask_(mask), image_(image) {}
+
+  float MeanAround(int x, int y) {
+    if (levels_.empty()) Build();
+    for (size_t k = 0; k < levels_.size(); ++k) {
+      const int level = kDirectLevels + static_cast<int>(k);
+      const float count = levels_[k].count.at(x >> level, y >> level);
+      if (count > 0) return levels_[k].sum.at(x >> level, y >> level) / count;
+    }
+    return 0;
+  }
+
+ private:
+  void Build() {
+    levels_ = {SumsOf(mask_, image_)};
+    while (levels_.back().sum.pixels().size() > 1) levels_.push_back(Halve(levels_.back()));
+  }
+
+  const Image<uint8_t>& mask_;
+  const Image<float>& image_;
+  std::vector<ValidSums> levels_;
+};
+
+float FillValue(const Image<uint8_t>& mask, const Image<float>& image, int x, int y,
+                LargeBlocks& large) {
+  for (int level = 1; level <= kDirectLevels; ++level) {
+    const std::optional<float> mean = MeanOfBlock(mask, image, x, y, level);
+    if (mean.has_value()) return *mean;
+  }
+  return large.MeanAround(x, y);
 }
 
 }  // namespace
@@ -93,24 +152,13 @@ void ExpandRow(const Image<float>& blocks, int block_px, int y, std::span<float>
   }
 }
 
-bool FillMasked(const Image<uint8_t>& mask, Image<float>& image) {
-  const auto flags = mask.pixels();
-  if (std::ranges::all_of(flags, [](uint8_t m) { return m == 0; })) return false;
-  std::vector<ValidSums> levels = {SumsOf(mask, image)};
-  while (levels.back().sum.pixels().size() > 1) levels.push_back(Halve(levels.back()));
+void FillMasked(const Image<uint8_t>& mask, Image<float>& image) {
+  LargeBlocks large(mask, image);
   for (int y = 0; y < image.size().height_px; ++y) {
     for (int x = 0; x < image.size().width_px; ++x) {
-      if (mask.at(x, y) == 0) continue;
-      image.at(x, y) = 0;
-      for (size_t k = 1; k < levels.size(); ++k) {
-        const float count = levels[k].count.at(x >> k, y >> k);
-        if (!(count > 0)) continue;
-        image.at(x, y) = levels[k].sum.at(x >> k, y >> k) / count;
-        break;
-      }
+      if (mask.at(x, y) != 0) image.at(x, y) = FillValue(mask, image, x, y, large);
     }
   }
-  return true;
 }
 
 }  // namespace eyebox::optics

@@ -17,8 +17,8 @@ Image<float> BlockMeans(const Image<float>& image, int block_px);
 void ExpandRow(const Image<float>& blocks, int block_px, int y, std::span<float> row);
 
 // Gives each masked pixel the mean of the smallest block around it (2, 4, 8, ... pixels wide) that
-// holds valid ones; nothing where none is valid. Returns whether anything was masked.
-bool FillMasked(const Image<uint8_t>& mask, Image<float>& image);
+// holds valid ones; 0 if none is valid in the whole image.
+void FillMasked(const Image<uint8_t>& mask, Image<float>& image);
 
 }  // namespace eyebox::optics
 

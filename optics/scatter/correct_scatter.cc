@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -30,41 +31,44 @@ std::vector<float> Roughness(int frequencies) {
   return roughness;
 }
 
-absl::Status CheckPixels(const MeasuredImage& image) {
-  const auto value = image.value.pixels();
-  const auto variance = image.variance.pixels();
-  const auto mask = image.mask.pixels();
-  for (size_t i = 0; i < value.size(); ++i) {
-    const bool sound = std::isfinite(value[i]) && variance[i] >= 0 && std::isfinite(variance[i]);
-    if (mask[i] != 0 || sound) continue;
-    const size_t width = image.size().width_px;
-    return BadInput(absl::StrCat("image, pixel (", i % width, ", ", i / width, ")"),
-                    absl::StrCat("value ", value[i], ", variance ", variance[i]),
-                    "mask it, or give finite numbers");
-  }
-  return absl::OkStatus();
+absl::Status BadPixel(const MeasuredImage& image, size_t i) {
+  const size_t width = image.size().width_px;
+  return BadInput(
+      absl::StrCat("image, pixel (", i % width, ", ", i / width, ")"),
+      absl::StrCat("value ", image.value.pixels()[i], ", variance ", image.variance.pixels()[i]),
+      "mask it, or give finite numbers");
 }
 
 struct Statistics {
   size_t valid = 0;
   double light = 0;           // sum
   double noise_variance = 0;  // mean
-  double brightest = 0;
+  float brightest = 0;
 };
 
-Statistics Survey(const MeasuredImage& image) {
+absl::StatusOr<Statistics> Survey(const MeasuredImage& image) {
+  constexpr float kLargest = std::numeric_limits<float>::max();
   Statistics found;
   const auto value = image.value.pixels();
+  const auto variance = image.variance.pixels();
   const auto mask = image.mask.pixels();
   for (size_t i = 0; i < value.size(); ++i) {
     if (mask[i] != 0) continue;
+    const float magnitude = std::abs(value[i]);
+    if (!(magnitude <= kLargest && variance[i] >= 0 && variance[i] <= kLargest)) {
+      return BadPixel(image, i);
+    }
     ++found.valid;
     found.light += value[i];
-    found.noise_variance += image.variance.pixels()[i];
-    found.brightest = std::max<double>(found.brightest, std::abs(value[i]));
+    found.noise_variance += variance[i];
+    found.brightest = std::max(found.brightest, magnitude);
   }
   if (found.valid > 0) found.noise_variance /= static_cast<double>(found.valid);
   return found;
+}
+
+bool AnyMasked(const MeasuredImage& image, const Statistics& found) {
+  return found.valid < image.size().PixelCount();
 }
 
 // Of an image that is dark outside, as the transform sees it.
@@ -90,6 +94,21 @@ double ChooseRegularisation(const Image<float>& image, double noise_variance) {
   const double noise_gradient = 4 * noise_variance;
   const double structure = MeanSquaredGradient(image) - noise_gradient;
   return noise_variance / std::max(structure, kLeastStructure * noise_gradient);
+}
+
+// The same in all but value, variance and floor, which are there to be filled.
+ScatterCorrection Blank(const LuminanceImage& reading) {
+  ScatterCorrection correction;
+  LuminanceImage& luminance = correction.luminance;
+  luminance.scale_relative_sigma = reading.scale_relative_sigma;
+  luminance.absolute = reading.absolute;
+  luminance.flat_corrected = reading.flat_corrected;
+  luminance.image.unit = reading.image.unit;
+  luminance.image.history = reading.image.history;
+  luminance.image.mask = reading.image.mask;
+  luminance.image.variance = Image<float>(reading.image.size());
+  correction.floor = Image<float>(reading.image.size());
+  return correction;
 }
 
 }  // namespace
@@ -175,7 +194,9 @@ ScatterCorrector::Wide ScatterCorrector::Spread(const MeasuredImage& reading,
   return wide;
 }
 
-// `correction` arrives with the deconvolved light as its value and the mask of the reading.
+// `correction` arrives with the deconvolved light as its value and the mask of the reading, whose
+// masked pixels have NaN for their noise. It leaves the number of pixels below the floor as a
+// share.
 void ScatterCorrector::Finish(const Wide& wide, const MeasuredImage& reading,
                               const Image<float>& filled, double brightest,
                               ScatterCorrection& correction) const {
@@ -192,15 +213,21 @@ void ScatterCorrector::Finish(const Wide& wide, const MeasuredImage& reading,
     if (!wide.guessed.empty()) ExpandRow(wide.guessed, block, y, guessed);
     const auto before = filled.row(y);
     const auto noise = reading.variance.row(y);
+    const auto mask = reading.mask.row(y);
     const auto value = correction.luminance.image.value.row(y);
     const auto variance = correction.luminance.image.variance.row(y);
     const auto floor = correction.floor.row(y);
     for (int x = 0; x < width; ++x) {
-      value[x] += edge[x];
-      variance[x] = near_gain * noise[x] + far[x];
+      value[x] = mask[x] == 0 ? value[x] + edge[x] : kNoValue;
+      variance[x] = near_gain * (mask[x] == 0 ? noise[x] : kNoValue) + far[x];
       const float glare = before[x] - value[x];
       floor[x] = reach * std::sqrt(variance[x] + kernel_square * glare * glare +
                                    guessed[x] * guessed[x] + rounding_square);
+    }
+    for (int x = 0; x < width; ++x) {
+      if (mask[x] != 0) continue;
+      correction.light_after += value[x];
+      correction.below_floor_share += value[x] < floor[x] ? 1 : 0;
     }
   }
 }
@@ -212,35 +239,28 @@ absl::StatusOr<ScatterCorrection> ScatterCorrector::Correct(const LuminanceImage
                     absl::StrCat("give ", torus_.window().width_px, " x ",
                                  torus_.window().height_px, " pixels, as prepared for"));
   }
-  EYEBOX_RETURN_IF_ERROR(CheckPixels(image));
-  const Statistics found = Survey(image);
-  ScatterCorrection correction;
-  correction.luminance = reading;
-  correction.floor = Image<float>(image.size(), kNoValue);
-  if (found.valid == 0) return correction;
-
-  Image<float> filled = image.value;
-  const bool any_masked = FillMasked(image.mask, filled);
+  EYEBOX_ASSIGN_OR_RETURN(const Statistics found, Survey(image));
+  if (found.valid == 0) {
+    ScatterCorrection nothing;
+    nothing.luminance = reading;
+    nothing.floor = Image<float>(image.size(), kNoValue);
+    return nothing;
+  }
+  Image<float> own;  // only if there is something to fill in
+  if (AnyMasked(image, found)) {
+    own = image.value;
+    FillMasked(image.mask, own);
+  }
+  const Image<float>& filled = own.empty() ? image.value : own;
+  ScatterCorrection correction = Blank(reading);
   correction.regularisation = ChooseRegularisation(filled, found.noise_variance);
-  Image<float>& light = correction.luminance.image.value;
-  light = filled;
-  correction.noise_gain = Deconvolve(correction.regularisation, light);
-  Wide wide = Spread(image, filled, any_masked);
+  correction.luminance.image.value = filled;
+  correction.noise_gain = Deconvolve(correction.regularisation, correction.luminance.image.value);
+  Wide wide = Spread(image, filled, !own.empty());
   wide.near_gain = std::max(correction.noise_gain - wide_glare_.FarNoiseGain(), 0.0);
   Finish(wide, image, filled, found.brightest, correction);
-  BlankMaskedPixels(correction.luminance.image);
-
-  size_t below = 0;
-  for (size_t i = 0; i < light.pixels().size(); ++i) {
-    if (image.mask.pixels()[i] != 0) {
-      correction.floor.pixels()[i] = kNoValue;
-      continue;
-    }
-    correction.light_after += light.pixels()[i];
-    if (light.pixels()[i] < correction.floor.pixels()[i]) ++below;
-  }
   correction.light_before = found.light;
-  correction.below_floor_share = static_cast<double>(below) / static_cast<double>(found.valid);
+  correction.below_floor_share /= static_cast<double>(found.valid);
   correction.luminance.image.history.push_back(absl::StrCat(
       "CorrectScatter(tail ", kernel_.tail_share, ", pedestal ", kernel_.pedestal_share,
       ", lambda ", correction.regularisation, options_.keep_core ? ", core kept)" : ")"));

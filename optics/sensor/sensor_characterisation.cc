@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -22,15 +23,21 @@ absl::StatusOr<DefectMap> FindDefects(const SeriesCollector& series, const Defec
   return map;
 }
 
-// Steps of the linearity fit's range or below it, before anything clips.
+// Of steps under one light, before anything clips.
 std::vector<LinearityPair> PairsOf(const Emva1288Result& emva) {
-  std::vector<ResponsePoint> points;
+  std::map<int, std::vector<ResponsePoint>> groups;
   for (const PhotonTransferStep& step : emva.steps) {
-    if (step.saturated_share > 0 || step.irradiation > emva.saturation_irradiation.value) break;
+    if (step.saturated_share > 0 || step.irradiation > emva.saturation_irradiation.value) continue;
+    std::vector<ResponsePoint>& points = groups[step.group];
     points.push_back(
         {step.irradiation, step.signal_dn, step.signal_sigma_dn * step.signal_sigma_dn});
   }
-  return PairsOfSeries(points);
+  std::vector<LinearityPair> pairs;
+  for (const auto& [group, points] : groups) {
+    const std::vector<LinearityPair> more = PairsOfSeries(points);
+    pairs.insert(pairs.end(), more.begin(), more.end());
+  }
+  return pairs;
 }
 
 }  // namespace

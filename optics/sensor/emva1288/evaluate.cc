@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "absl/strings/str_cat.h"
 #include "capture/base/status.h"
@@ -116,16 +117,27 @@ void DeriveRange(const Emva1288Options& options, Emva1288Result& result) {
   }
 }
 
+// The group with most steps from `from_dn` to `to_dn`, the first of equals.
+int LinearityGroup(const Steps& steps, double from_dn, double to_dn) {
+  std::map<int, int> counts;
+  for (const PhotonTransferStep& step : steps) {
+    if (step.signal_dn >= from_dn && step.signal_dn <= to_dn) ++counts[step.group];
+  }
+  const auto most = std::max_element(counts.begin(), counts.end(),
+                                     [](auto& a, auto& b) { return a.second < b.second; });
+  return most == counts.end() ? 0 : most->first;
+}
+
 void MeasureLinearity(const Emva1288Options& options, double saturation_dn, Steps& steps,
                       Emva1288Result& result) {
   std::vector<LinePoint> points;
   std::vector<PhotonTransferStep*> taken;
   LinearityError error;
+  const double from_dn = options.linearity_from * saturation_dn;
+  const double to_dn = options.linearity_to * saturation_dn;
+  const int group = LinearityGroup(steps, from_dn, to_dn);
   for (PhotonTransferStep& step : steps) {
-    if (step.signal_dn < options.linearity_from * saturation_dn ||
-        step.signal_dn > options.linearity_to * saturation_dn) {
-      continue;
-    }
+    if (step.group != group || step.signal_dn < from_dn || step.signal_dn > to_dn) continue;
     points.push_back({step.irradiation, step.signal_dn, step.signal_sigma_dn});
     taken.push_back(&step);
     error.sigma = std::max(error.sigma, step.signal_sigma_dn / step.signal_dn);
@@ -199,7 +211,7 @@ double Emva1288Result::SnrMaxDb() const { return 20 * std::log10(snr_max.value);
 
 absl::StatusOr<Emva1288Result> EvaluateEmva1288(std::span<const SetStatistics> sets,
                                                 const Emva1288Options& options) {
-  const OrderedSets ordered = OrderSets(sets);
+  const OrderedSets ordered = OrderSets(sets, options.pairs_are_temporal);
   EYEBOX_ASSIGN_OR_RETURN(Steps steps, SubtractDarks(ordered));
   const size_t saturation = SaturationStep(steps);
   const double saturation_dn = steps[saturation].signal_dn;

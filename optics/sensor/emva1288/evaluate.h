@@ -23,12 +23,16 @@ struct Emva1288Options {
   double gain_fraction = 0.7;    // of saturation: upper end of the fits of K and R
   double linearity_from = 0.05;  // of saturation
   double linearity_to = 0.95;
+  // Sets of exactly two images make the temporal series and the others serve the spatial figures,
+  // where both kinds exist; false: every set serves both.
+  bool pairs_are_temporal = true;
 };
 
 // One step of the series, its dark subtracted.
 struct PhotonTransferStep {
   double exposure_s = 0;
   double irradiation = 0;
+  int group = 0;         // see SetCondition
   double signal_dn = 0;  // mu_y - mu_y.dark
   double signal_sigma_dn = 0;
   double dark_mean_dn = 0;         // mu_y.dark
@@ -85,8 +89,8 @@ struct Emva1288Result {
   double SnrMaxDb() const;
 };
 
-// Sets of exactly two images make the temporal series, the others serve the spatial figures; where
-// only one kind exists it serves both. Every bright set needs a dark of its exposure.
+// Every bright set needs a dark of its exposure. The linearity error is that of the group with most
+// steps in its range.
 // Errors: InvalidArgument (no dark of an exposure: named), FailedPrecondition (fewer than three
 // bright steps, K not above 0, no bright set unsaturated near half of saturation).
 absl::StatusOr<Emva1288Result> EvaluateEmva1288(std::span<const SetStatistics> sets,

@@ -22,7 +22,7 @@ void Split(std::vector<const SetStatistics*> all, std::vector<const SetStatistic
 
 }  // namespace
 
-OrderedSets OrderSets(std::span<const SetStatistics> sets) {
+OrderedSets OrderSets(std::span<const SetStatistics> sets, bool pairs_are_temporal) {
   std::vector<const SetStatistics*> bright;
   std::vector<const SetStatistics*> dark;
   for (const SetStatistics& set : sets) (set.condition.dark ? dark : bright).push_back(&set);
@@ -32,6 +32,7 @@ OrderedSets OrderSets(std::span<const SetStatistics> sets) {
   std::stable_sort(dark.begin(), dark.end(), [](const auto* a, const auto* b) {
     return a->condition.exposure_s < b->condition.exposure_s;
   });
+  if (!pairs_are_temporal) return {bright, dark, bright, dark};
   OrderedSets ordered;
   Split(bright, ordered.temporal_bright, ordered.spatial_bright);
   Split(dark, ordered.temporal_dark, ordered.spatial_dark);
@@ -59,6 +60,7 @@ absl::StatusOr<std::vector<PhotonTransferStep>> SubtractDarks(const OrderedSets&
     PhotonTransferStep step;
     step.exposure_s = exposure_s;
     step.irradiation = set->condition.irradiation;
+    step.group = set->condition.group;
     step.signal_dn = set->mean_dn - dark->mean_dn;
     step.signal_sigma_dn = std::hypot(set->mean_sigma_dn, dark->mean_sigma_dn);
     step.dark_mean_dn = dark->mean_dn;

@@ -18,7 +18,8 @@ struct OrderedSets {
   std::vector<const SetStatistics*> spatial_dark;
 };
 
-OrderedSets OrderSets(std::span<const SetStatistics> sets);
+// See Emva1288Options::pairs_are_temporal.
+OrderedSets OrderSets(std::span<const SetStatistics> sets, bool pairs_are_temporal);
 
 // The dark of this exposure, to 1 part in 1e4; null if there is none.
 const SetStatistics* DarkOf(std::span<const SetStatistics* const> darks, double exposure_s);

@@ -23,6 +23,17 @@ struct SetCondition {
   // to it where photons are not known. 0 for darks.
   double irradiation = 0;
   std::optional<double> temperature_degC = {};
+  double gain_db = 0;
+  // Bright sets of one group saw light of one constant radiance: their irradiations are to scale.
+  // Those of other groups are known up to a factor each.
+  int group = 0;
+};
+
+// Part of the images; an empty size means all of them.
+struct PixelRegion {
+  int left_px = 0;
+  int top_px = 0;
+  ImageSize size = {};
 };
 
 // Variances are DN^2 of one pixel of one image, averaged over the pixels. `_sigma` is a standard
@@ -52,9 +63,12 @@ class SetAccumulator {
  public:
   // Pixels `colour_period_px` apart have one colour: 1 for a grey sensor, 2 for a Bayer mosaic,
   // whose colours then count as separate sensors with averaged variances.
-  SetAccumulator(SetCondition condition, const SensorRange& range, int colour_period_px);
+  // Statistics are those of `region`, the stack is whole.
+  SetAccumulator(SetCondition condition, const SensorRange& range, int colour_period_px,
+                 const PixelRegion& region = {});
 
-  // Errors: those of FrameStacker::Add, with the condition's place in front.
+  // Errors: those of FrameStacker::Add, with the condition's place in front; InvalidArgument (the
+  // region leaves the image).
   absl::Status Add(const FrameView& image);
 
   struct Finished {
@@ -65,9 +79,13 @@ class SetAccumulator {
   // InvalidArgument (images smaller than 6 x 6 pixels of a colour).
   absl::StatusOr<Finished> Finish();
 
+  int images() const { return stacker_.frames(); }
+  SetCondition& condition() { return condition_; }
+
  private:
   SetCondition condition_;
   int colour_period_px_;
+  PixelRegion region_;
   FrameStacker stacker_;
   double square_sum_dn2_ = 0;  // over all pixels and images
   double mean_sum_dn_ = 0;     // over the images, of their means

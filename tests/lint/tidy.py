@@ -4,7 +4,8 @@
     tests/lint/tidy.py BUILD [FOLDER ...]
 
 FOLDER is a top-level folder of the project; capture, optics and fit unless given. A source that
-passed is read again only after it, a header of ours that it includes, or .clang-tidy has changed.
+passed is read again only after it, a header of ours that it includes, or .clang-tidy has changed:
+what passed is noted below $XDG_CACHE_HOME/eyebox/tidy (or ~/.cache) for every checkout.
 Prints the findings and exits 1 if there is any.
 """
 
@@ -20,6 +21,7 @@ from pathlib import Path
 import cpp
 
 ROOT = Path(__file__).resolve().parents[2]
+PASSED = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "eyebox" / "tidy"
 GCC_ONLY = re.compile(r" -f(?:vect-cost-model=\S+|no-tree-\S+|tree-\S+)")
 
 
@@ -46,20 +48,22 @@ def closure_of(file, seen):
 
 def digest_of(file):
     inputs = sorted(closure_of(file, set())) + [ROOT / ".clang-tidy"]
-    return hashlib.sha256(b"\0".join(path.read_bytes() for path in inputs)).hexdigest()
+    named = (path.relative_to(ROOT).as_posix().encode() + b"\0" + path.read_bytes()
+             for path in inputs)
+    return hashlib.sha256(b"\0".join(named)).hexdigest()
 
 
 def tidy(build, file):
     """Returns clang-tidy's output, empty if `file` is clean."""
-    stamp = build / "tidy" / (file.relative_to(ROOT).as_posix().replace("/", ".") + ".clean")
-    digest = digest_of(file)
-    if stamp.is_file() and stamp.read_text() == digest:
+    passed = PASSED / digest_of(file)
+    if passed.is_file():
         return ""
     run = subprocess.run(["clang-tidy", "--quiet", "-p", build / "tidy", file],
                          capture_output=True, text=True, check=False)
     if run.returncode:
         return run.stdout + run.stderr
-    stamp.write_text(digest)
+    PASSED.mkdir(parents=True, exist_ok=True)
+    passed.write_text(file.relative_to(ROOT).as_posix() + "\n")
     return ""
 
 

@@ -138,6 +138,33 @@ TEST_F(Recover, DamageOutsideOfTheFramesIsNotTrusted) {
   EXPECT_THAT(Frames(path_), ElementsAre(0, 1, 2, 3, 4));
 }
 
+// Steps against every region: HDF5's own bytes, records, strings, frames.
+TEST_F(Recover, AFlippedBitAnywhereCostsAtMostTheFrameThatItIsIn) {
+  RecordAndCrash(4);
+  std::filesystem::rename(path_, folder_ / "crashed");
+  const size_t size = std::filesystem::file_size(folder_ / "crashed" / partial_);
+  int frames_hit = 0;
+  int structure_hit = 0;
+  for (size_t at = 0; at < size; at += 61) {
+    std::filesystem::remove_all(path_);
+    std::filesystem::copy(folder_ / "crashed", path_, std::filesystem::copy_options::recursive);
+    Flip(partial_, at);
+    const RecoverReport report = Recovered();
+    ASSERT_TRUE(report.capture.has_value());
+    const std::vector<int> frames = Frames(path_);  // none of them false
+    EXPECT_EQ(static_cast<int>(frames.size()),
+              5 + (report.capture->remark.empty() ? report.capture->frames_kept : 0));
+    if (!report.capture->remark.empty()) {
+      ++structure_hit;
+    } else {
+      EXPECT_GE(report.capture->frames_kept, 3) << "byte " << at;
+      if (report.capture->frames_kept == 3) ++frames_hit;
+    }
+  }
+  EXPECT_GT(frames_hit, 0);
+  EXPECT_GT(structure_hit, 0);
+}
+
 // Cut anywhere behind the record that says that capture 2 began.
 TEST_F(Recover, EntersACaptureWhoseRecordIsTornOrMissing) {
   Record(path_);

@@ -38,9 +38,9 @@ class Recovery {
         EYEBOX_RETURN_IF_ERROR(ReadHeader(recording_, scan.manifest).status());
       }
       if (scan.manifest.begun) EYEBOX_RETURN_IF_ERROR(MendCapture(*scan.manifest.begun, log));
+      EYEBOX_RETURN_IF_ERROR(MendUnbegun(static_cast<int>(scan.manifest.entries.size()) + 1));
     }
     if (scan.whole_bytes == 0) EYEBOX_RETURN_IF_ERROR(BeginManifest());
-    EYEBOX_RETURN_IF_ERROR(MendUnbegun(static_cast<int>(scan.manifest.entries.size()) + 1));
     EYEBOX_ASSIGN_OR_RETURN(report_.verified, VerifyRecording(recording_));
     return absl::OkStatus();
   }

@@ -1,0 +1,112 @@
+#include "fit/scatter/fit_scatter.h"
+
+#include <cmath>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "capture/base/status.h"
+#include "fit/scatter/glare_covariance.h"
+#include "fit/scatter/glare_model.h"
+
+namespace eyebox::fit {
+namespace {
+
+constexpr double kChance = 3;  // standard deviations of chi-square that count as chance
+
+std::string UnitOf(int parameter, const GlareSeries& series) {
+  if (parameter == kCoreRadius || parameter == kTailRadius) return "deg";
+  return parameter == kBright || parameter == kBackground ? series.luminance_unit : "1";
+}
+
+// Factor on the covariance: what the residuals show beyond the stated sigmas.
+double ExcessScatter(double chi_square, int degrees_of_freedom) {
+  if (degrees_of_freedom <= 0) return 1;
+  const double expected = degrees_of_freedom;
+  const bool chance = chi_square <= expected + kChance * std::sqrt(2 * expected);
+  return chance ? 1 : chi_square / expected;
+}
+
+double GlareRelativeSigma(const ScatterFit& fit) {
+  const double share = fit.kernel.tail_share + fit.kernel.pedestal_share;
+  const auto at = [&](int i, int j) { return fit.covariance[i * kGlareParameters + j]; };
+  const double variance = at(kTailShare, kTailShare) + at(kPedestalShare, kPedestalShare) +
+                          2 * at(kTailShare, kPedestalShare);
+  return share > 0 ? std::sqrt(std::max(variance, 0.0)) / share : 0;
+}
+
+std::vector<FittedGlareReading> Compare(const GlareSeries& series,
+                                        const std::vector<double>& predicted) {
+  std::vector<FittedGlareReading> fitted;
+  for (size_t i = 0; i < predicted.size(); ++i) {
+    const GlareReading& reading = series.readings[i];
+    fitted.push_back(
+        {reading, predicted[i], (predicted[i] - reading.luminance) / reading.luminance_sigma});
+  }
+  return fitted;
+}
+
+}  // namespace
+
+absl::Status ScatterFitOptions::Validate() const {
+  optics::ScatterKernel held{.core = core, .tail = tail, .reach_deg = reach_deg};
+  held.core_radius_deg = core_radius_deg.value_or(held.core_radius_deg);
+  held.tail_radius_deg = tail_radius_deg.value_or(held.tail_radius_deg);
+  held.tail_exponent = tail_exponent.value_or(held.tail_exponent);
+  EYEBOX_RETURN_IF_ERROR(held.Validate());
+  if (bright_luminance.has_value() && !(*bright_luminance > 0 && *bright_luminance < HUGE_VAL)) {
+    return BadInput("bright_luminance", absl::StrCat(*bright_luminance),
+                    "give a luminance above 0, or leave it to the fit");
+  }
+  if (background_luminance.has_value() && !std::isfinite(*background_luminance)) {
+    return BadInput("background_luminance", absl::StrCat(*background_luminance),
+                    "give a finite luminance, or leave it to the fit");
+  }
+  return instrument.has_value() ? instrument->kernel.Validate() : absl::OkStatus();
+}
+
+KnownScatter ScatterFit::AsInstrument() const {
+  KnownScatter known{kernel, {}};
+  for (int i = 0; i < kKernelParameters; ++i) {
+    for (int j = 0; j < kKernelParameters; ++j) {
+      known.covariance[i * kKernelParameters + j] = covariance[i * kGlareParameters + j];
+    }
+  }
+  return known;
+}
+
+absl::StatusOr<ScatterFit> FitScatter(const GlareSeries& series, const ScatterFitOptions& options) {
+  EYEBOX_RETURN_IF_ERROR(series.Validate());
+  EYEBOX_RETURN_IF_ERROR(options.Validate());
+  const GlareModel model(series, options);
+  const int readings = static_cast<int>(series.readings.size());
+  const int free = static_cast<int>(model.Free().size());
+  if (readings < free) {
+    return Rejected(series.source,
+                    absl::StrCat(readings, " glare readings for ", free, " free parameters"),
+                    "measure more disks or hold parameters that are known");
+  }
+  EYEBOX_ASSIGN_OR_RETURN(GlareSolution solution, SolveGlare(model));
+  const GlareValues values = model.ValuesOf(solution.coordinates);
+  ScatterFit fit;
+  fit.kernel = KernelOf(values, options);
+  fit.bright_luminance = values[kBright];
+  fit.background_luminance = values[kBackground];
+  fit.readings = Compare(series, model.Predict(values));
+  fit.chi_square = solution.chi_square;
+  fit.degrees_of_freedom = readings - free;
+  fit.termination = std::move(solution.termination);
+  GlareUncertainty uncertainty = MeasureUncertainty(
+      model, solution.coordinates, ExcessScatter(fit.chi_square, fit.degrees_of_freedom));
+  fit.covariance = uncertainty.covariance;
+  fit.open = std::move(uncertainty.open);
+  fit.identifiability = std::move(uncertainty.identifiability);
+  for (int i = 0; i < kGlareParameters; ++i) {
+    const double variance = fit.covariance[i * (kGlareParameters + 1)];
+    fit.parameters[i] = {kGlareNames[i], values[i], std::sqrt(std::max(variance, 0.0)),
+                         UnitOf(i, series)};
+  }
+  fit.glare_relative_sigma = GlareRelativeSigma(fit);
+  return fit;
+}
+
+}  // namespace eyebox::fit

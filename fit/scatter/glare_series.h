@@ -1,0 +1,42 @@
+// Readings that show how light scatters: disks of growing diameter, a small bright source seen from
+// its side, black disks on a bright field.
+#ifndef EYEBOX_FIT_SCATTER_GLARE_SERIES_H_
+#define EYEBOX_FIT_SCATTER_GLARE_SERIES_H_
+
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+
+namespace eyebox::fit {
+
+enum class GlarePattern {
+  kBrightDisk,  // bright on the display's black; a small one is a bright source
+  kBlackDisk,   // black on the bright field
+};
+
+struct GlareReading {
+  GlarePattern pattern = GlarePattern::kBrightDisk;
+  double diameter_deg = 0;  // 0: no disk, the plain field
+  // Of the disk's centre from where the instrument looks. A ring of pixels has one offset only if
+  // it is narrow: away from the core, which falls off within less than a ring.
+  double offset_deg = 0;
+  double luminance = 0;        // unit of the series; of a camera, of the pixels that look there
+  double luminance_sigma = 0;  // standard uncertainty, without the scale's
+};
+
+struct GlareSeries {
+  std::vector<GlareReading> readings;
+  double field_radius_deg = 50;  // of the display, around the disk's centre
+  std::string luminance_unit;    // "cd/m2" or "relative"
+  std::string source;            // a file or recording, for messages
+
+  // Errors: InvalidArgument naming source and reading (fewer than 4, an angle negative or not
+  // finite, luminance not finite, sigma not above 0).
+  absl::Status Validate() const;
+  double LargestLuminance() const;
+};
+
+}  // namespace eyebox::fit
+
+#endif  // EYEBOX_FIT_SCATTER_GLARE_SERIES_H_

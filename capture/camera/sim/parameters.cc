@@ -88,6 +88,19 @@ absl::Status ValidateSensor(const SensorParameters& sensor) {
   });
 }
 
+absl::Status ValidateFaults(const SimFaults& faults) {
+  return CheckRanges({
+      {"faults.gamma", faults.gamma, 0.1, 10},
+      {"faults.stale_frames", static_cast<double>(faults.stale_frames), 0, 100},
+      {"faults.strobe_period_s", faults.strobe_period_s, 0, 10},
+      {"faults.strobe_duty", faults.strobe_duty, 1e-6, 1},
+      {"faults.row_time_s", faults.row_time_s, 0, 1},
+      {"faults.display_pixel_px", faults.display_pixel_px, 0, 1e4},
+      {"faults.display_pixel_fill", faults.display_pixel_fill, 1e-6, 1},
+      {"faults.stuck_gain_db", faults.stuck_gain_db, 0, 60},
+  });
+}
+
 SimParameters RiftSLikeCutoff() {
   SimParameters parameters;
   parameters.name = "rift-s-like-cutoff";
@@ -123,6 +136,7 @@ SimParameters Ideal() {
 absl::Status SimParameters::Validate() const {
   EYEBOX_RETURN_IF_ERROR(ValidateDisplay(display));
   EYEBOX_RETURN_IF_ERROR(ValidateOptics(*this));
+  EYEBOX_RETURN_IF_ERROR(ValidateFaults(faults));
   return ValidateSensor(sensor);
 }
 

@@ -76,6 +76,20 @@ struct SensorParameters {
   double gain_max_db = 24;
 };
 
+// What is wrong with the rig: by default nothing. Each is one stage of the forward model.
+struct SimFaults {
+  bool auto_exposure = false;  // the camera brings the mean to half scale, whatever it is told
+  double gamma = 1;            // of the counts; full scale stays full scale
+  int stale_frames = 0;        // after a change of exposure, still of the old one
+  bool black_clamped = false;  // the camera takes the bias off, and what is below 0 is lost
+  double strobe_period_s = 0;  // the display flashes once a period; 0: it is steady
+  double strobe_duty = 0.2;
+  double row_time_s = 0;        // each row begins so long after the one above; 0: global shutter
+  double display_pixel_px = 0;  // camera pixels per display pixel; 0: no grid is seen
+  double display_pixel_fill = 0.6;  // lit share of the pitch, in x and in y
+  double stuck_gain_db = 0;         // the gain never goes below
+};
+
 struct SimParameters {
   std::string name = "rift-s-like";
   DisplayParameters display;
@@ -86,6 +100,7 @@ struct SimParameters {
       .focal_length_px = 219.8, .principal_x_px = 79.5, .principal_y_px = 59.5};
   bool vignetting = true;  // cos^4 of the field angle
   SensorParameters sensor;
+  SimFaults faults;
 
   // Errors: InvalidArgument (names the field and its range).
   absl::Status Validate() const;

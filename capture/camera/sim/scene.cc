@@ -4,6 +4,7 @@
 
 #include "capture/base/status.h"
 #include "capture/camera/sim/display.h"
+#include "capture/camera/sim/faults.h"
 #include "capture/camera/sim/optics.h"
 
 namespace eyebox::capture {
@@ -38,6 +39,9 @@ absl::StatusOr<Image<double>> SceneRate(const SimParameters& parameters,
                                         const FixedPattern& pattern, const CaptureSpec& spec) {
   EYEBOX_ASSIGN_OR_RETURN(const Image<double> luminance, LuminanceOf(parameters, spec));
   EYEBOX_ASSIGN_OR_RETURN(Image<double> rate, Scatter(luminance, parameters.scatter));
+  if (spec.kind == FrameKind::kLight && parameters.faults.display_pixel_px > 0) {
+    MultiplyBy(DisplayGrid(parameters.faults, parameters.sensor.size), rate);
+  }
   if (parameters.vignetting) {
     MultiplyBy(Vignetting(parameters.geometry, parameters.sensor.size), rate);
   }

@@ -14,6 +14,7 @@ namespace eyebox::capture {
 //   light: responsivity * PRNU * cos^4 * (w convolved with (g * stimulus luminance))
 //   flat:  responsivity * PRNU * cos^4 * luminance of the spec (no headset, so no g)
 //   dark:  0
+// A display whose pixel grid is seen (faults) has it multiplied in after the scatter.
 // Each factor is one that a step of the reduction removes again.
 // Errors: InvalidArgument (names the field of the spec that is missing or out of range).
 absl::StatusOr<Image<double>> SceneRate(const SimParameters& parameters,

@@ -1,5 +1,6 @@
 #include "capture/camera/sim/sim_rig.h"
 
+#include <algorithm>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -9,6 +10,7 @@
 
 #include "capture/base/status.h"
 #include "capture/camera/camera_state.h"
+#include "capture/camera/sim/faults.h"
 #include "capture/camera/sim/scene.h"
 #include "capture/camera/sim/sensor.h"
 
@@ -16,7 +18,8 @@ namespace eyebox::capture {
 namespace {
 
 constexpr std::string_view kScheme = "sim:";
-constexpr uint64_t kFrameStream = 100;   // key apart from those of the fixed pattern
+constexpr uint64_t kFrameStream = 100;  // keys apart from those of the fixed pattern
+constexpr uint64_t kFlashStream = 101;
 constexpr int64_t kReadoutNs = 1000000;  // between the end of an exposure and the next one
 
 // What camera and presenter share: the sensor looking at the headset.
@@ -26,7 +29,8 @@ class SimBench {
       : parameters_(parameters),
         seed_(seed),
         pattern_(MakeFixedPattern(parameters.sensor, seed)),
-        rate_e_s_(parameters.sensor.size, 0.0) {}
+        rate_e_s_(parameters.sensor.size, 0.0),
+        exposure_fault_(parameters.faults, parameters.sensor) {}
 
   absl::Status Present(const CaptureSpec& spec) {
     if (!IsShown(spec)) {
@@ -38,12 +42,26 @@ class SimBench {
     return absl::OkStatus();
   }
 
-  std::vector<uint16_t> Expose(const CameraSettings& settings) {
-    NoiseSource noise({seed_, kFrameStream, presentation_, exposure_++});
-    return capture::Expose(parameters_.sensor, pattern_, rate_e_s_, settings, noise);
+  std::vector<uint16_t> Expose(CameraSettings settings) {
+    settings.exposure_s = exposure_fault_.Made(settings, rate_e_s_);
+    NoiseSource noise({seed_, kFrameStream, presentation_, exposure_});
+    auto counts_dn =
+        capture::Expose(parameters_.sensor, pattern_, Rate(settings.exposure_s), settings, noise);
+    ++exposure_;
+    Distort(parameters_.faults, parameters_.sensor, counts_dn);
+    return counts_dn;
   }
 
  private:
+  // Camera and display run on clocks of their own: an exposure begins anywhere in a period.
+  Image<double> Rate(double exposure_s) const {
+    const SimFaults& faults = parameters_.faults;
+    const bool flashes = faults.strobe_period_s > 0 && shown_ && shown_->kind == FrameKind::kLight;
+    if (!flashes) return rate_e_s_;
+    NoiseSource when({seed_, kFlashStream, presentation_, exposure_});
+    return Flashed(faults, rate_e_s_, when.Uniform() * faults.strobe_period_s, exposure_s);
+  }
+
   // The scene does not depend on exposure, gain or name, so that a bracket draws it once.
   bool IsShown(const CaptureSpec& spec) const {
     return shown_ && shown_->kind == spec.kind && shown_->stimulus == spec.stimulus &&
@@ -54,6 +72,7 @@ class SimBench {
   const uint64_t seed_;
   const FixedPattern pattern_;
   Image<double> rate_e_s_;
+  ExposureFault exposure_fault_;
   std::optional<CaptureSpec> shown_;
   uint64_t presentation_ = 0;
   uint64_t exposure_ = 0;
@@ -76,10 +95,12 @@ CameraInfo InfoOf(const RigConfig& config, const SimParameters& parameters) {
 
 class SimCamera final : public Camera {
  public:
-  SimCamera(CameraInfo info, double bias_dn, std::shared_ptr<SimBench> bench, const Clock* clock)
+  SimCamera(CameraInfo info, const SimParameters& parameters, std::shared_ptr<SimBench> bench,
+            const Clock* clock)
       : info_(std::move(info)),
         state_(info_.uri),
-        bias_dn_(bias_dn),
+        bias_dn_(parameters.faults.black_clamped ? 0 : parameters.sensor.bias_dn),
+        least_gain_db_(parameters.faults.stuck_gain_db),
         bench_(std::move(bench)),
         clock_(clock) {}
 
@@ -87,7 +108,7 @@ class SimCamera final : public Camera {
 
   absl::StatusOr<CameraSettings> Configure(const CameraSettings& settings) override {
     EYEBOX_RETURN_IF_ERROR(state_.Configure(info_, settings));
-    return state_.settings();
+    return Settings();
   }
 
   absl::Status Start() override { return state_.Start(); }
@@ -113,9 +134,15 @@ class SimCamera final : public Camera {
   }
 
  private:
+  // As the camera has them, which its faults may have changed.
+  CameraSettings Settings() const {
+    CameraSettings settings = state_.settings();
+    settings.gain_db = std::max(settings.gain_db, least_gain_db_);
+    return settings;
+  }
+
   Frame TakeFrame() {
-    auto counts_dn =
-        std::make_shared<const std::vector<uint16_t>>(bench_->Expose(state_.settings()));
+    auto counts_dn = std::make_shared<const std::vector<uint16_t>>(bench_->Expose(Settings()));
     Frame frame;
     frame.metadata = NextMetadata();
     frame.view = {.pixels_dn = *counts_dn, .size = info_.sensor_size};
@@ -134,7 +161,7 @@ class SimCamera final : public Camera {
     metadata.exposure_asked_s = settings.exposure_s;
     metadata.exposure_reported_s = settings.exposure_s;
     metadata.gain_asked_db = settings.gain_db;
-    metadata.gain_reported_db = settings.gain_db;
+    metadata.gain_reported_db = Settings().gain_db;
     metadata.black_level_dn = bias_dn_;
     return metadata;
   }
@@ -142,6 +169,7 @@ class SimCamera final : public Camera {
   const CameraInfo info_;
   CameraState state_;
   const double bias_dn_;
+  const double least_gain_db_;
   const std::shared_ptr<SimBench> bench_;
   const Clock* const clock_;
   std::deque<Frame> pending_;
@@ -164,7 +192,13 @@ absl::StatusOr<SimParameters> SimParametersOf(const RigConfig& config) {
   if (!config.camera_uri.starts_with(kScheme)) {
     return BadInput(config.camera_uri, "is not a simulated rig", "give a URI like sim:rift-s-like");
   }
-  return NamedSimParameters(std::string_view(config.camera_uri).substr(kScheme.size()));
+  const std::string_view name = std::string_view(config.camera_uri).substr(kScheme.size());
+  const size_t query = name.find('?');
+  EYEBOX_ASSIGN_OR_RETURN(SimParameters parameters, NamedSimParameters(name.substr(0, query)));
+  if (query == std::string_view::npos) return parameters;
+  EYEBOX_ASSIGN_OR_RETURN(parameters.faults, ParseFaults(name.substr(query + 1)));
+  parameters.name = name;
+  return parameters;
 }
 
 absl::StatusOr<Rig> OpenSimRig(const RigConfig& config, const SimParameters& parameters,
@@ -174,8 +208,7 @@ absl::StatusOr<Rig> OpenSimRig(const RigConfig& config, const SimParameters& par
   Rig rig;
   rig.config = config;
   rig.origin = RecordingOrigin::kSimulated;
-  rig.camera = std::make_unique<SimCamera>(InfoOf(config, parameters), parameters.sensor.bias_dn,
-                                           bench, clock);
+  rig.camera = std::make_unique<SimCamera>(InfoOf(config, parameters), parameters, bench, clock);
   rig.presenter = std::make_unique<SimPresenter>(std::move(bench));
   return rig;
 }

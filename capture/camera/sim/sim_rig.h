@@ -9,7 +9,8 @@
 
 namespace eyebox::capture {
 
-// What config.camera_uri ("sim:NAME") names. Errors: InvalidArgument (not a known sim: URI).
+// What config.camera_uri ("sim:NAME" or "sim:NAME?fault=FAULT,...") names; with faults its name
+// holds them too. Errors: InvalidArgument (not a known sim: URI).
 absl::StatusOr<SimParameters> SimParametersOf(const RigConfig& config);
 
 // The noise of a frame is a function of (seed, ordinal of Present() since opening, ordinal of the

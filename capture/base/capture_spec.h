@@ -15,6 +15,12 @@ enum class FrameKind {
   kFlat,   // a uniform reference display or integrating sphere instead of the headset
 };
 
+// What a capture is for.
+enum class CaptureRole {
+  kMeasurement,
+  kReference,  // one and the same patch again and again: shows drift, and a headset that slept
+};
+
 enum class StimulusPattern {
   kFullField,
   kDisk,       // bright disk on drive 0, centred on the optical axis
@@ -43,6 +49,7 @@ struct CaptureSpec {
   // Known luminance of what the camera looks at, and its relative standard uncertainty.
   std::optional<double> luminance_cd_m2;
   std::optional<double> luminance_relative_sigma;
+  CaptureRole role = CaptureRole::kMeasurement;
   friend bool operator==(const CaptureSpec&, const CaptureSpec&) = default;
 };
 

@@ -57,6 +57,10 @@ constexpr Pairs<TriggerSource, v1::TriggerSource> kTriggers = {
     {TriggerSource::kLine, v1::TRIGGER_SOURCE_LINE},
     {TriggerSource::kFreeRun, v1::TRIGGER_SOURCE_FREE_RUN}};
 
+constexpr Pairs<CaptureRole, v1::CaptureRole> kRoles = {
+    {CaptureRole::kMeasurement, v1::CAPTURE_ROLE_UNSPECIFIED},
+    {CaptureRole::kReference, v1::CAPTURE_ROLE_REFERENCE}};
+
 template <typename Domain, typename Proto>
 Proto ToProto(const Pairs<Domain, Proto>& pairs, Domain value) {
   return std::find_if(pairs.begin(), pairs.end(),
@@ -186,6 +190,7 @@ v1::CaptureSpec ToProto(const CaptureSpec& spec) {
   if (spec.luminance_relative_sigma) {
     proto.set_luminance_relative_sigma(*spec.luminance_relative_sigma);
   }
+  proto.set_role(ToProto(kRoles, spec.role));
   return proto;
 }
 
@@ -281,6 +286,7 @@ absl::StatusOr<CaptureSpec> FromProto(const v1::CaptureSpec& proto, const std::s
         CheckRange(where + " luminance_relative_sigma", proto.luminance_relative_sigma(), 0, 1));
     spec.luminance_relative_sigma = proto.luminance_relative_sigma();
   }
+  EYEBOX_ASSIGN_OR_RETURN(spec.role, FromProto(kRoles, proto.role(), where + " role"));
   return spec;
 }
 

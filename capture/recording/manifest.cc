@@ -21,6 +21,7 @@ constexpr size_t kLargestManifest = size_t{16} << 20;
 constexpr uint32_t kHeaderType = 1;
 constexpr uint32_t kCaptureType = 2;
 constexpr uint32_t kBegunType = 3;
+constexpr uint32_t kSuspectType = 4;
 
 // Stands before every payload.
 struct Prefix {
@@ -119,11 +120,26 @@ absl::Status AddBegun(const std::string& payload, const std::string& where, Mani
   return absl::OkStatus();
 }
 
+absl::Status AddSuspects(const std::string& payload, const std::string& where, Manifest& manifest) {
+  v1::ManifestSuspect proto;
+  if (!proto.ParseFromString(payload)) return Damaged(where, "is no record of suspect captures");
+  const int published = static_cast<int>(manifest.entries.size());
+  if (proto.first() < 1 || proto.last() < proto.first() || proto.last() > published ||
+      proto.reason().empty()) {
+    return Damaged(where, "suspects captures that are not there, or says not why");
+  }
+  for (int number = proto.first(); number <= proto.last(); ++number) {
+    manifest.entries[static_cast<size_t>(number) - 1].suspect = proto.reason();
+  }
+  return absl::OkStatus();
+}
+
 absl::Status AddRecord(uint32_t type, const std::string& payload, bool first,
                        const std::string& where, Manifest& manifest) {
   if (first && type == kHeaderType) return AddHeader(payload, where, manifest);
   if (!first && type == kCaptureType) return AddCapture(payload, where, manifest);
   if (!first && type == kBegunType) return AddBegun(payload, where, manifest);
+  if (!first && type == kSuspectType) return AddSuspects(payload, where, manifest);
   return Damaged(where, "holds a record of unknown type " + std::to_string(type));
 }
 
@@ -201,6 +217,14 @@ absl::Status ManifestLog::Append(const BegunCapture& begun) {
   *proto.mutable_capture() = ToProto(begun.entry);
   proto.set_structure_xxh3(begun.structure_xxh3);
   return AppendRecord(kBegunType, proto.SerializeAsString());
+}
+
+absl::Status ManifestLog::Append(const SuspectCaptures& suspects) {
+  v1::ManifestSuspect proto;
+  proto.set_first(suspects.first);
+  proto.set_last(suspects.last);
+  proto.set_reason(suspects.reason);
+  return AppendRecord(kSuspectType, proto.SerializeAsString());
 }
 
 absl::Status ManifestLog::CutRest() {

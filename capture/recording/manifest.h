@@ -24,6 +24,7 @@ struct ManifestEntry {
   int frame_count = 0;
   int row_count = 0;  // of /frames; more than frame_count where the capture stopped early
   bool packed = false;
+  std::string suspect;  // why it must not be used; empty where it may
   uint64_t file_bytes = 0;
   uint64_t frames_offset_bytes = 0;  // 0 in a packed file
   uint64_t records_offset_bytes = 0;
@@ -36,6 +37,13 @@ struct ManifestEntry {
   }
   uint64_t FrameOffset(uint64_t row) const { return frames_offset_bytes + row * FrameBytes(); }
   uint64_t RecordOffset(uint64_t row) const;
+};
+
+// Published captures `first` to `last` that must not be used.
+struct SuspectCaptures {
+  int first = 0;
+  int last = 0;
+  std::string reason;  // not empty
 };
 
 // A capture file that was about to take its first frame.
@@ -77,6 +85,7 @@ class ManifestLog {
   // Errors: the errno of the disk; after one, nothing more may be appended.
   absl::Status Append(const ManifestEntry& entry);
   absl::Status Append(const BegunCapture& begun);
+  absl::Status Append(const SuspectCaptures& suspects);
   // Removes what stands behind the last whole record.
   absl::Status CutRest();
 

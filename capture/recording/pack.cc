@@ -76,6 +76,10 @@ absl::StatusOr<PackReport> PackRecording(const std::filesystem::path& recording,
     const std::filesystem::path file = CapturePath(staged.path(), capture.number);
     EYEBOX_ASSIGN_OR_RETURN(const ManifestEntry entry, PackCapture(*reader, capture, file));
     EYEBOX_RETURN_IF_ERROR(manifest.Append(entry));
+    if (!capture.suspect.empty()) {
+      EYEBOX_RETURN_IF_ERROR(manifest.Append(
+          SuspectCaptures{.first = entry.number, .last = entry.number, .reason = capture.suspect}));
+    }
     EYEBOX_ASSIGN_OR_RETURN(const int64_t bytes_before, SizeOf(capture.file));
     report.bytes_before += bytes_before;
     report.bytes_after += static_cast<int64_t>(entry.file_bytes);

@@ -47,7 +47,8 @@ class FileReader final : public RecordingReader {
                            .frame_size = entry.frame_size,
                            .frame_count = entry.frame_count,
                            .packed = entry.packed,
-                           .file = CapturePath(recording, entry.number)});
+                           .file = CapturePath(recording, entry.number),
+                           .suspect = entry.suspect});
     }
   }
 

@@ -23,6 +23,8 @@ struct CaptureEntry {
   int frame_count = 0;  // whole frames; fewer than spec.repeats where the capture stopped early
   bool packed = false;  // compressed afterwards (`pack`)
   std::filesystem::path file;
+  // Why it must not be used (the headset slept meanwhile); empty where it may.
+  std::string suspect = {};
 };
 
 // Sees the captures that were published when it was opened, also while more are recorded.

@@ -8,7 +8,8 @@ namespace eyebox::capture {
 CapturePlan RemainingCaptures(const CapturePlan& plan, std::span<const CaptureEntry> published) {
   std::vector<const CaptureEntry*> unclaimed;
   for (const CaptureEntry& capture : published) {
-    if (capture.frame_count == capture.spec.repeats) unclaimed.push_back(&capture);
+    const bool whole = capture.frame_count == capture.spec.repeats;
+    if (whole && capture.suspect.empty()) unclaimed.push_back(&capture);
   }
   CapturePlan remaining;
   for (const CaptureSpec& spec : plan.captures) {

@@ -9,9 +9,9 @@
 
 namespace eyebox::capture {
 
-// The captures of `plan` without a published one of equal specification and full length, in the
-// order of the plan. A capture that stopped early is taken again whole, so that its frames stand
-// close together in time; the frames that it has stay in the recording.
+// The captures of `plan` without a published one of equal specification and full length that is not
+// suspect, in the order of the plan. A capture that stopped early is taken again whole, so that its
+// frames stand close together in time; the frames that it has stay in the recording.
 CapturePlan RemainingCaptures(const CapturePlan& plan, std::span<const CaptureEntry> published);
 
 }  // namespace eyebox::capture

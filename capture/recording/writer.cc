@@ -199,6 +199,21 @@ class FileRecording final : public RecordingWriter {
     return std::make_unique<FileCapture>(book_, std::move(entry), *std::move(file));
   }
 
+  absl::Status SuspectSince(int first, const std::string& reason) override {
+    EYEBOX_RETURN_IF_ERROR(CheckUsable());
+    if (first < 1 || first > book_->published || reason.empty()) {
+      return BadInput(book_->recording.string(),
+                      "capture " + std::to_string(first) + " cannot be suspected",
+                      "name a published capture and the reason");
+    }
+    const absl::Status status = book_->manifest.Append(
+        SuspectCaptures{.first = first, .last = book_->published, .reason = reason});
+    book_->failed |= !status.ok();
+    return status;
+  }
+
+  int PublishedCount() const override { return book_->published; }
+
  private:
   absl::Status CheckUsable() const {
     const std::string where = book_->recording.string();

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
@@ -52,6 +53,14 @@ class RecordingWriter {
   // Errors: ResourceExhausted (disk full; says how much is needed and free).
   virtual absl::StatusOr<std::unique_ptr<CaptureWriter>> BeginCapture(const CaptureSpec& spec,
                                                                       ImageSize frame_size) = 0;
+
+  // Captures published since number `first` (1, 2, ... as in their file names) must not be used,
+  // for `reason`; RemainingCaptures() names them again. Durable when this returns OK.
+  // Errors: InvalidArgument (none of that number is published, no reason), FailedPrecondition (a
+  // capture is open), the errno of the disk.
+  virtual absl::Status SuspectSince(int first, const std::string& reason) = 0;
+  // Captures published so far, those of earlier sessions and suspect ones included.
+  virtual int PublishedCount() const = 0;
 };
 
 }  // namespace eyebox::capture

@@ -3,6 +3,7 @@
 #define EYEBOX_TESTS_SUPPORT_MEMORY_RECORDING_H_
 
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,14 @@ class MemoryRecording final : public RecordingWriter {
     captures_.back()->spec = spec;
     return std::make_unique<Writer>(captures_.back());
   }
+
+  absl::Status SuspectSince(int first, const std::string&) override {
+    suspect_since_.push_back(first);
+    return absl::OkStatus();
+  }
+  int PublishedCount() const override { return static_cast<int>(Published().size()); }
+
+  const std::vector<int>& suspect_since() const { return suspect_since_; }
 
   // Every capture that was begun, published or not.
   const std::vector<std::shared_ptr<MemoryCapture>>& captures() const { return captures_; }
@@ -69,6 +78,7 @@ class MemoryRecording final : public RecordingWriter {
   };
 
   std::vector<std::shared_ptr<MemoryCapture>> captures_;
+  std::vector<int> suspect_since_;
 };
 
 }  // namespace eyebox::capture

@@ -48,6 +48,15 @@ absl::Status CheckFlats(const PlanOptions& options) {
                   "give the relative standard uncertainty, above 0 and below 1");
 }
 
+absl::Status CheckReference(const PlanOptions& options) {
+  EYEBOX_RETURN_IF_ERROR(CheckCount("reference_every", options.reference_every, 0, 4096));
+  if (options.reference_every == 0) return absl::OkStatus();
+  EYEBOX_RETURN_IF_ERROR(CheckCount("reference_repeats", options.reference_repeats, 1, 65536));
+  if (options.reference_drive > 0 && options.reference_drive <= 1) return absl::OkStatus();
+  return BadInput("PlanOptions.reference_drive", "is " + std::to_string(options.reference_drive),
+                  "give a drive value above 0 and up to 1");
+}
+
 // Fisher & Yates.
 std::vector<int> ShuffledLevels(int levels, uint64_t seed) {
   std::vector<int> order(static_cast<size_t>(levels));
@@ -97,9 +106,30 @@ class PlanBuilder {
     AddBracket(grey);
   }
 
+  void AddLevelsAndReferences(const std::vector<int>& order) {
+    const auto every = static_cast<size_t>(options_.reference_every);
+    for (size_t i = 0; i < order.size(); ++i) {
+      if (every > 0 && i % every == 0) AddReference();
+      AddLevel(order[i]);
+    }
+    if (every > 0) AddReference();
+  }
+
   CapturePlan Finish() { return std::move(plan_); }
 
  private:
+  void AddReference() {
+    CaptureSpec reference;
+    reference.series = kReferenceSeries;
+    reference.role = CaptureRole::kReference;
+    const double drive = options_.reference_drive;
+    reference.stimulus.drive = DriveRgb{drive, drive, drive};
+    reference.exposure_s = options_.exposures_s.front();
+    reference.gain_db = options_.gain_db;
+    reference.repeats = options_.reference_repeats;
+    plan_.captures.push_back(reference);
+  }
+
   const PlanOptions& options_;
   CapturePlan plan_;
 };
@@ -115,6 +145,7 @@ absl::Status PlanOptions::Validate() const {
   EYEBOX_RETURN_IF_ERROR(CheckCount("repeats", repeats, 1, 65536));
   EYEBOX_RETURN_IF_ERROR(CheckCount("dark_repeats", dark_repeats, 1, 65536));
   EYEBOX_RETURN_IF_ERROR(CheckCount("flat_repeats", flat_repeats, 0, 65536));
+  EYEBOX_RETURN_IF_ERROR(CheckReference(*this));
   return CheckFlats(*this);
 }
 
@@ -123,7 +154,7 @@ absl::StatusOr<CapturePlan> MakeGreyPlan(const PlanOptions& options) {
   PlanBuilder builder(options);
   builder.AddDarks();
   builder.AddFlats();
-  for (const int level : ShuffledLevels(options.levels, options.seed)) builder.AddLevel(level);
+  builder.AddLevelsAndReferences(ShuffledLevels(options.levels, options.seed));
   return builder.Finish();
 }
 

@@ -11,6 +11,8 @@
 
 namespace eyebox::capture {
 
+inline constexpr const char* kReferenceSeries = "reference";
+
 // Defaults fit "sim:rift-s-like" and displays like it (peak 59 cd/m2, black 0.19 cd/m2).
 struct PlanOptions {
   int levels = 17;  // drive values i / (levels - 1)
@@ -27,6 +29,11 @@ struct PlanOptions {
   double flat_luminance_cd_m2 = 9;
   double flat_luminance_relative_sigma = 0.02;  // of the photometer that read the reference
   uint64_t seed = 1;                            // of the order of levels
+  // A grey patch comes back before the first level, after every so many and after the last, in the
+  // shortest exposure, which nothing saturates. It shows drift and whether the headset slept.
+  int reference_every = 0;  // levels; 0: no reference
+  double reference_drive = 0.5;
+  int reference_repeats = 4;
 
   // Errors: InvalidArgument (names the field and what it may be).
   absl::Status Validate() const;
@@ -34,7 +41,8 @@ struct PlanOptions {
 
 // Darks of every exposure, flats at every exposure (reduction masks what saturates), then grey full
 // fields: the levels in random order, so that drift of display or camera does not look like a
-// slope, each with the whole bracket, shortest exposure first. Level i has level_id i.
+// slope, each with the whole bracket, shortest exposure first. Level i has level_id i. References
+// between them are the series kReferenceSeries.
 // Errors: those of Validate().
 absl::StatusOr<CapturePlan> MakeGreyPlan(const PlanOptions& options);
 

@@ -1,58 +1,15 @@
 #include "capture/run.h"
 
-#include <cmath>
-#include <memory>
-#include <optional>
-#include <string>
+#include <utility>
 
 #include "capture/base/status.h"
 #include "capture/base/version.h"
 #include "capture/camera/camera_state.h"
+#include "capture/run/attempt.h"
+#include "capture/run/frame_check.h"
 
 namespace eyebox::capture {
 namespace {
-
-// Inside this file Aborted means: this attempt is spoilt, another one may succeed.
-absl::Status Spoilt(const std::string& what) { return absl::AbortedError(what); }
-
-std::string NameOf(BufferStatus status) {
-  switch (status) {
-    case BufferStatus::kComplete:
-      return "is complete";
-    case BufferStatus::kMissingPackets:
-      return "misses packets";
-    case BufferStatus::kTimedOut:
-      return "timed out";
-    case BufferStatus::kDeviceError:
-      return "carries a device error";
-    case BufferStatus::kAborted:
-      return "was aborted";
-  }
-  return "has an unknown status";
-}
-
-bool SameExposure(double reported_s, double asked_s, double tolerance) {
-  return std::abs(reported_s - asked_s) <= tolerance * asked_s;
-}
-
-constexpr double kGainToleranceDb = 1e-3;
-
-absl::Status CheckReported(const FrameMetadata& metadata, const CaptureSpec& spec,
-                           const RunOptions& options) {
-  const std::string frame = "frame " + std::to_string(metadata.camera_frame_id);
-  if (metadata.exposure_reported_s &&
-      !SameExposure(*metadata.exposure_reported_s, spec.exposure_s, options.exposure_tolerance)) {
-    return Spoilt(frame + " reports an exposure of " +
-                  std::to_string(*metadata.exposure_reported_s) + " s instead of " +
-                  std::to_string(spec.exposure_s) + " s");
-  }
-  if (metadata.gain_reported_db &&
-      std::abs(*metadata.gain_reported_db - spec.gain_db) > kGainToleranceDb) {
-    return Spoilt(frame + " reports a gain of " + std::to_string(*metadata.gain_reported_db) +
-                  " dB instead of " + std::to_string(spec.gain_db) + " dB");
-  }
-  return absl::OkStatus();
-}
 
 absl::Status CheckPlan(const CameraInfo& info, const CapturePlan& plan) {
   if (plan.captures.empty()) return BadInput("plan", "holds no capture", "plan one or more");
@@ -76,101 +33,126 @@ absl::Status CheckPlan(const CameraInfo& info, const CapturePlan& plan) {
 class PlanRunner {
  public:
   PlanRunner(Rig& rig, RecordingWriter& writer, const RunOptions& options)
-      : camera_(*rig.camera), presenter_(*rig.presenter), writer_(writer), options_(options) {}
-
-  // Takes capture `number` (from 1) until it is complete or the attempts are used up.
-  absl::Status Take(int number, const CaptureSpec& spec) {
-    absl::Status status;
-    for (int attempt = 1; attempt <= options_.attempts; ++attempt) {
-      status = Attempt(spec);
-      if (!absl::IsAborted(status)) return status;
-      ++report_.captures_taken_again;
-    }
-    return DeviceFailed(
-        "capture " + std::to_string(number),
-        "failed " + std::to_string(options_.attempts) + " times; the last time " +
-            std::string(status.message()),
-        "check cable, bandwidth and trigger of " + camera_.Info().uri + " and capture again");
+      : rig_(rig),
+        writer_(writer),
+        options_(options),
+        uri_(rig.camera->Info().uri),
+        taker_(rig, writer, options),
+        log_(options.plausibility) {
+    for (const Reading& reading : options.earlier) log_.Add(reading);
   }
 
-  const RunReport& report() const { return report_; }
-
- private:
-  absl::Status Attempt(const CaptureSpec& spec) {
-    EYEBOX_RETURN_IF_ERROR(camera_.Stop());
-    EYEBOX_RETURN_IF_ERROR(Configure(spec));
-    EYEBOX_RETURN_IF_ERROR(presenter_.Present(spec));
-    EYEBOX_ASSIGN_OR_RETURN(std::unique_ptr<CaptureWriter> capture,
-                            writer_.BeginCapture(spec, camera_.Info().sensor_size));
-    EYEBOX_RETURN_IF_ERROR(camera_.Start());
-    EYEBOX_RETURN_IF_ERROR(TakeFrames(spec, *capture));
-    EYEBOX_RETURN_IF_ERROR(capture->Publish());
+  // Takes one capture until it is complete and plausible, or the attempts are used up.
+  absl::Status Take(const CaptureSpec& spec) {
+    CaptureFigures figures;
+    figures.reading = {.number = writer_.PublishedCount() + 1, .spec = spec, .mean = {}};
+    EYEBOX_ASSIGN_OR_RETURN(TakenCapture taken, TakePlausible(spec, figures));
+    EYEBOX_RETURN_IF_ERROR(taken.writer->Publish());
+    taken.writer.reset();  // closes the capture: only then may the manifest say more of it
     ++report_.captures;
     report_.frames += spec.repeats;
+    return Note(std::move(figures));
+  }
+
+  RunReport report() && { return std::move(report_); }
+
+ private:
+  absl::StatusOr<TakenCapture> TakePlausible(const CaptureSpec& spec, CaptureFigures& figures) {
+    for (int implausible = 0;; ++implausible) {
+      EYEBOX_ASSIGN_OR_RETURN(TakenCapture taken, TakeComplete(spec, figures));
+      figures.reading.mean = taken.mean;
+      if (taken.settling) figures.settling = taken.settling;
+      const std::string doubt = DoubtOf(spec, taken.mean);
+      if (doubt.empty() || implausible >= options_.implausible_attempts) {
+        figures.remark = doubt;
+        return taken;
+      }
+      taker_.SettleAnew();
+      ++report_.implausible;
+      ++report_.captures_taken_again;
+      ++figures.attempts;
+    }
+  }
+
+  std::string DoubtOf(const CaptureSpec& spec, const FrameMean& mean) const {
+    std::string dimmed = log_.Dimmed(spec, mean);
+    return dimmed.empty() ? log_.TooBright(spec, mean) : dimmed;
+  }
+
+  absl::StatusOr<TakenCapture> TakeComplete(const CaptureSpec& spec, CaptureFigures& figures) {
+    for (int spoilt = 0;; ++figures.attempts, ++report_.captures_taken_again) {
+      absl::StatusOr<TakenCapture> taken = taker_.Attempt(spec);
+      if (taken.ok()) return taken;
+      if (taker_.camera_lost() && MayReopen()) {
+        EYEBOX_RETURN_IF_ERROR(Reopen(taken.status()));
+      } else if (!absl::IsAborted(taken.status())) {
+        return taken;
+      } else if (++spoilt == options_.attempts) {
+        ++report_.captures_taken_again;
+        return DeviceFailed("capture " + std::to_string(figures.reading.number),
+                            "failed " + std::to_string(options_.attempts) +
+                                " times; the last time " + std::string(taken.status().message()),
+                            "check cable, bandwidth and trigger of " + uri_ + " and capture again");
+      }
+    }
+  }
+
+  bool MayReopen() const { return options_.reopen && report_.cameras_reopened == 0; }
+
+  // Its objects are never used again: a lost camera answers none of them.
+  absl::Status Reopen(const absl::Status& why) {
+    const CameraInfo before = rig_.camera->Info();
+    rig_.camera.reset();
+    EYEBOX_ASSIGN_OR_RETURN(rig_.camera, options_.reopen());
+    const CameraInfo& now = rig_.camera->Info();
+    if (now.sensor_size != before.sensor_size || now.significant_bits != before.significant_bits ||
+        now.serial != before.serial) {
+      return DeviceFailed(uri_, "was lost, and another camera answers in its place",
+                          "connect the camera " + before.model + " " + before.serial + " again");
+    }
+    ++report_.cameras_reopened;
+    report_.remarks.push_back("capture " + std::to_string(writer_.PublishedCount() + 1) +
+                              ": the camera was lost and opened again (" +
+                              std::string(why.message()) + ")");
+    taker_.CameraIsBack();
     return absl::OkStatus();
   }
 
-  absl::Status Configure(const CaptureSpec& spec) {
-    const CameraSettings asked = {.exposure_s = spec.exposure_s, .gain_db = spec.gain_db};
-    EYEBOX_ASSIGN_OR_RETURN(const CameraSettings set, camera_.Configure(asked));
-    if (SameExposure(set.exposure_s, asked.exposure_s, options_.exposure_tolerance) &&
-        std::abs(set.gain_db - asked.gain_db) <= kGainToleranceDb) {
-      return absl::OkStatus();
+  absl::Status Note(CaptureFigures figures) {
+    const CaptureSpec& spec = figures.reading.spec;
+    const std::string dimmed = log_.Dimmed(spec, figures.reading.mean);
+    const std::string earlier = log_.EarlierTooBright(spec, figures.reading.mean);
+    const auto remark = [&figures](const std::string& text) {
+      if (!text.empty()) figures.remark += (figures.remark.empty() ? "" : "; ") + text;
+    };
+    remark(earlier);
+    if (figures.settling && !figures.settling->settled) {
+      remark("it had not settled after " + std::to_string(figures.settling->seconds) + " s");
     }
-    return DeviceFailed(camera_.Info().uri,
-                        "was asked for " + std::to_string(asked.exposure_s) + " s, " +
-                            std::to_string(asked.gain_db) + " dB and reads back " +
-                            std::to_string(set.exposure_s) + " s, " + std::to_string(set.gain_db) +
-                            " dB",
-                        "plan exposures and gains that the camera can hold");
-  }
-
-  absl::Status TakeFrames(const CaptureSpec& spec, CaptureWriter& capture) {
-    std::optional<uint64_t> previous_id;
-    for (int i = 0; i < spec.repeats; ++i) {
-      if (options_.cancelled && options_.cancelled()) {
-        return absl::CancelledError("the run was cancelled");
-      }
-      EYEBOX_ASSIGN_OR_RETURN(const Frame frame, TakeFrame(spec));
-      EYEBOX_RETURN_IF_ERROR(CheckFrame(frame.metadata, spec, previous_id));
-      EYEBOX_RETURN_IF_ERROR(capture.Append(frame));
-      previous_id = frame.metadata.camera_frame_id;
-      const bool last = i + 1 == spec.repeats;
-      if (last || (i + 1) % options_.frames_per_acknowledgement == 0) {
-        EYEBOX_RETURN_IF_ERROR(capture.Acknowledge());
-      }
-    }
+    const std::string capture = "capture " + std::to_string(figures.reading.number);
+    if (!figures.remark.empty()) report_.remarks.push_back(capture + ": " + figures.remark);
+    if (options_.published) EYEBOX_RETURN_IF_ERROR(options_.published(figures));
+    if (!dimmed.empty()) return Slept(capture, dimmed);
+    log_.Add(std::move(figures.reading));
     return absl::OkStatus();
   }
 
-  absl::StatusOr<Frame> TakeFrame(const CaptureSpec& spec) {
-    EYEBOX_RETURN_IF_ERROR(camera_.Trigger());
-    const auto exposure = std::chrono::duration<double, std::milli>(spec.exposure_s * 1e3);
-    const auto timeout =
-        options_.frame_timeout + std::chrono::ceil<std::chrono::milliseconds>(exposure);
-    absl::StatusOr<Frame> frame = camera_.NextFrame(timeout);
-    if (!absl::IsDeadlineExceeded(frame.status())) return frame;
-    return Spoilt("a triggered frame did not arrive (" + std::string(frame.status().message()) +
-                  ")");
+  absl::Status Slept(const std::string& capture, const std::string& how) {
+    const int suspect = log_.LastReference() + 1;
+    EYEBOX_RETURN_IF_ERROR(writer_.SuspectSince(suspect, how));
+    return DeviceFailed(capture,
+                        how + ": the headset slept or dimmed, and what was taken from capture " +
+                            std::to_string(suspect) + " on is marked suspect",
+                        "wake it, keep it from sleeping and resume the recording: the suspect "
+                        "captures are taken again");
   }
 
-  absl::Status CheckFrame(const FrameMetadata& metadata, const CaptureSpec& spec,
-                          std::optional<uint64_t> previous_id) const {
-    const uint64_t id = metadata.camera_frame_id;
-    if (metadata.status != BufferStatus::kComplete) {
-      return Spoilt("frame " + std::to_string(id) + " " + NameOf(metadata.status));
-    }
-    if (previous_id && id != *previous_id + 1) {
-      return Spoilt("frame " + std::to_string(id) + " came after frame " +
-                    std::to_string(*previous_id) + ": the frames between were dropped");
-    }
-    return CheckReported(metadata, spec, options_);
-  }
-
-  Camera& camera_;
-  StimulusPresenter& presenter_;
+  Rig& rig_;
   RecordingWriter& writer_;
   const RunOptions& options_;
+  const std::string uri_;
+  CaptureTaker taker_;
+  ReadingLog log_;
   RunReport report_;
 };
 
@@ -179,7 +161,7 @@ absl::Status RunCaptures(PlanRunner& runner, const CapturePlan& plan, const RunO
   for (int i = 0; i < total; ++i) {
     const CaptureSpec& spec = plan.captures[static_cast<size_t>(i)];
     if (options.progress) options.progress({i, total, spec});
-    EYEBOX_RETURN_IF_ERROR(runner.Take(i + 1, spec));
+    EYEBOX_RETURN_IF_ERROR(runner.Take(spec));
   }
   return absl::OkStatus();
 }
@@ -188,9 +170,14 @@ absl::Status RunCaptures(PlanRunner& runner, const CapturePlan& plan, const RunO
 
 absl::Status RunOptions::Validate() const {
   if (attempts < 1) return BadInput("RunOptions.attempts", "is below 1", "allow one or more");
+  if (implausible_attempts < 0) {
+    return BadInput("RunOptions.implausible_attempts", "is below 0", "allow none or more");
+  }
   if (frames_per_acknowledgement < 1) {
     return BadInput("RunOptions.frames_per_acknowledgement", "is below 1", "give one or more");
   }
+  if (settle) EYEBOX_RETURN_IF_ERROR(settle->Validate());
+  EYEBOX_RETURN_IF_ERROR(plausibility.Validate());
   if (exposure_tolerance >= 0 && exposure_tolerance < 1) return absl::OkStatus();
   return BadInput("RunOptions.exposure_tolerance", "is " + std::to_string(exposure_tolerance),
                   "give a fraction from 0 up to 1");
@@ -214,10 +201,11 @@ absl::StatusOr<RunReport> RunPlan(Rig& rig, const CapturePlan& plan, RecordingWr
   EYEBOX_RETURN_IF_ERROR(CheckPlan(rig.camera->Info(), plan));
   PlanRunner runner(rig, writer, options);
   const absl::Status run = RunCaptures(runner, plan, options);
-  const absl::Status stop = rig.camera->Stop();
+  // A camera that was lost and could not be opened again is not there any more.
+  const absl::Status stop = rig.camera ? rig.camera->Stop() : absl::OkStatus();
   if (!run.ok()) return run;
   if (!stop.ok()) return stop;
-  return runner.report();
+  return std::move(runner).report();
 }
 
 }  // namespace eyebox::capture

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <string>
 
 namespace eyebox::capture {
 namespace {
@@ -78,6 +79,36 @@ TEST(GreyPlan, OrderOfLevelsIsRandomButRepeatable) {
   EXPECT_FALSE(std::ranges::is_sorted(lights, {}, &CaptureSpec::level_id));
 }
 
+TEST(GreyPlan, ReferencesStandFirstLastAndEverySoManyLevels) {
+  const auto plan = MakeGreyPlan({.levels = 5,
+                                  .exposures_s = {0.1, 0.4},
+                                  .flat_repeats = 0,
+                                  .reference_every = 2,
+                                  .reference_drive = 0.25});
+  ASSERT_TRUE(plan.ok()) << plan.status();
+  std::string order;
+  for (const CaptureSpec& spec : OfKind(*plan, FrameKind::kLight)) {
+    const bool reference = spec.role == CaptureRole::kReference;
+    order += reference ? 'R' : 'l';
+    if (!reference) continue;
+    EXPECT_EQ(spec.series, kReferenceSeries);
+    EXPECT_EQ(spec.stimulus.drive, (DriveRgb{0.25, 0.25, 0.25}));
+    EXPECT_EQ(spec.exposure_s, 0.1);
+    EXPECT_EQ(spec.repeats, 4);
+    EXPECT_EQ(spec.level_id, -1);
+  }
+  EXPECT_EQ(order, "RllllRllllRllR");  // two exposures a level
+}
+
+TEST(GreyPlan, ReferencesLeaveTheOrderOfLevelsAsItIs) {
+  auto with = MakeGreyPlan({.reference_every = 4});
+  const auto without = MakeGreyPlan({});
+  ASSERT_TRUE(with.ok() && without.ok());
+  std::erase_if(with->captures,
+                [](const CaptureSpec& spec) { return spec.role == CaptureRole::kReference; });
+  EXPECT_EQ(with->captures, without->captures);
+}
+
 TEST(GreyPlan, EveryOrderIsEquallyLikely) {
   int first_place[4] = {};
   for (uint64_t seed = 0; seed < 4000; ++seed) {
@@ -105,6 +136,12 @@ TEST(GreyPlan, RefusesOptionsByName) {
   EXPECT_THAT(message({.repeats = 0}), HasSubstr("repeats"));
   EXPECT_THAT(message({.dark_repeats = 0}), HasSubstr("dark_repeats"));
   EXPECT_THAT(message({.flat_repeats = -1}), HasSubstr("flat_repeats"));
+  EXPECT_THAT(message({.reference_every = -1}), HasSubstr("reference_every"));
+  EXPECT_THAT(message({.reference_every = 4, .reference_drive = 0}), HasSubstr("reference_drive"));
+  EXPECT_THAT(message({.reference_every = 4, .reference_drive = nan}),
+              HasSubstr("reference_drive"));
+  EXPECT_THAT(message({.reference_every = 4, .reference_repeats = 0}),
+              HasSubstr("reference_repeats"));
   EXPECT_THAT(message({.flat_luminance_cd_m2 = 0}), HasSubstr("flat_luminance_cd_m2"));
   EXPECT_THAT(message({.flat_luminance_relative_sigma = nan}),
               HasSubstr("flat_luminance_relative_sigma"));

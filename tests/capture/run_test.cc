@@ -74,6 +74,8 @@ TEST_F(Run, AcknowledgesInGroups) {
                                                                 ImageSize) override {
       return std::make_unique<Writer>(groups);
     }
+    absl::Status SuspectSince(int, const std::string&) override { return absl::OkStatus(); }
+    int PublishedCount() const override { return 0; }
     std::vector<int> groups;
 
    private:
@@ -145,6 +147,9 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Fault{CameraFault::kDropped, "frame 11 came after frame 9"},
                     Fault{CameraFault::kIncomplete, "frame 8 misses packets"},
                     Fault{CameraFault::kTimedOut, "did not arrive"},
+                    Fault{CameraFault::kLate, "did not arrive"},
+                    Fault{CameraFault::kDuplicated, ": it came twice or late"},
+                    Fault{CameraFault::kReordered, "frame 11 came after frame 9"},
                     Fault{CameraFault::kOldExposure, "frame 8 reports an exposure of 0.015"},
                     Fault{CameraFault::kOtherGain, "frame 8 reports a gain of 6"}));
 

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "capture/camera/camera.h"
@@ -15,6 +16,9 @@ enum class CameraFault {
   kDropped,      // the frame is lost on the way and the next one comes instead
   kIncomplete,   // some packets are missing
   kTimedOut,     // the frame never comes
+  kLate,         // the frame comes after it was given up
+  kDuplicated,   // the frame before comes again instead
+  kReordered,    // the next frame comes before this one
   kOldExposure,  // the frame reports an exposure of before
   kOtherGain,    // the frame reports another gain
   kLost,         // the camera is gone
@@ -33,13 +37,21 @@ class FaultyCamera final : public Camera {
   }
   absl::Status Start() override { return camera_->Start(); }
   absl::Status Trigger() override { return camera_->Trigger(); }
-  absl::Status Stop() override { return camera_->Stop(); }
+  absl::Status Stop() override {
+    held_back_.reset();
+    return camera_->Stop();
+  }
 
   absl::StatusOr<Frame> NextFrame(std::chrono::milliseconds timeout) override {
+    const CameraFault fault = fault_(count_++);
+    if (fault == CameraFault::kLate) return absl::DeadlineExceededError("no frame yet");
+    if (held_back_) return *std::exchange(held_back_, std::nullopt);
     absl::StatusOr<Frame> frame = camera_->NextFrame(timeout);
     if (!frame.ok()) return frame;
+    if (fault == CameraFault::kDuplicated && previous_) return *previous_;
+    previous_ = *frame;
     FrameMetadata& metadata = frame->metadata;
-    switch (fault_(count_++)) {
+    switch (fault) {
       case CameraFault::kNone:
         break;
       case CameraFault::kDropped:
@@ -48,6 +60,13 @@ class FaultyCamera final : public Camera {
       case CameraFault::kIncomplete:
         metadata.status = BufferStatus::kMissingPackets;
         metadata.missing_packets = 3;
+        break;
+      case CameraFault::kReordered:
+        if (absl::Status status = camera_->Trigger(); !status.ok()) return status;
+        held_back_ = *std::move(frame);
+        return camera_->NextFrame(timeout);
+      case CameraFault::kLate:
+      case CameraFault::kDuplicated:
         break;
       case CameraFault::kTimedOut:
         return absl::DeadlineExceededError("no frame");
@@ -67,6 +86,8 @@ class FaultyCamera final : public Camera {
   const std::unique_ptr<Camera> camera_;
   const FaultOf fault_;
   int count_ = 0;
+  std::optional<Frame> previous_;
+  std::optional<Frame> held_back_;
 };
 
 }  // namespace eyebox::capture

@@ -42,6 +42,7 @@ function(eyebox_test)
   target_compile_definitions(${ARG_NAME} PRIVATE
                              EYEBOX_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                              EYEBOX_BINARY_DIR="${CMAKE_BINARY_DIR}")
-  gtest_discover_tests(${ARG_NAME} DISCOVERY_TIMEOUT 60
-                       PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 300)
+  # One entry a program: what its tests share (a recording, a server) is made once.
+  add_test(NAME ${ARG_NAME} COMMAND ${ARG_NAME} --gtest_brief=1)
+  set_tests_properties(${ARG_NAME} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 600)
 endfunction()

@@ -37,7 +37,8 @@ v1::Parameter Named(const google::protobuf::RepeatedPtrField<v1::Parameter>& par
 }
 
 capture::SimTruth Truth() {
-  const auto parameters = capture::SimParametersOf({.camera_uri = "sim:rift-s-like"});
+  const auto parameters =
+      capture::SimParametersOf({.name = "truth", .camera_uri = "sim:rift-s-like"});
   EXPECT_TRUE(parameters.ok()) << parameters.status();
   return capture::MakeSimTruth(*parameters, 5);
 }
@@ -130,8 +131,8 @@ TEST_F(Pipeline, CertifiesBothTables) {
 }
 
 TEST_F(Pipeline, WritesWhatItLists) {
-  const auto contents = Contents(Out());
   ASSERT_GT(Result().files_size(), 6);
+  const auto contents = Contents(Out());
   EXPECT_EQ(contents.size(), static_cast<size_t>(Result().files_size()));
   for (const std::string& file : Result().files()) {
     EXPECT_TRUE(contents.contains(file)) << file;

@@ -8,6 +8,7 @@
 
 #include "capture/base/random.h"
 #include "tests/fit/activation/simulated_series.h"
+#include "tests/support/temporary_folder.h"
 
 namespace eyebox::fit {
 namespace {
@@ -94,7 +95,8 @@ TEST(LevelSeriesTest, OneLevelOrThreeAreTooFew) {
 class LevelSeriesCsvTest : public ::testing::Test {
  protected:
   absl::StatusOr<LevelSeries> Read(const std::string& text) {
-    const std::string file = ::testing::TempDir() + "/level_series.csv";
+    const TemporaryFolder folder;
+    const std::filesystem::path file = folder / "level_series.csv";
     std::ofstream(file) << text;
     return ReadLevelSeriesCsv(file);
   }

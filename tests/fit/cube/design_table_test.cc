@@ -15,6 +15,7 @@
 #include "capture/base/file.h"
 #include "fit/cube/table_file.h"
 #include "tests/fit/cube/evaluator.h"
+#include "tests/support/temporary_folder.h"
 
 namespace eyebox::fit {
 namespace {
@@ -26,8 +27,8 @@ constexpr Real kFrom = 0.05L;
 constexpr int kSamples = 8009;  // none of them is one of the designer's
 
 Cube3d WrittenAndReadBack(const TableDesign& table) {
-  const std::filesystem::path file =
-      std::filesystem::path(testing::TempDir()) / "design_table_test.cube";
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder / "design_table_test.cube";
   EXPECT_TRUE(WriteFileAtomically(file, *EncodeTable(table)).ok());
   auto cube = ReadCube(file);
   EXPECT_TRUE(cube.ok()) << cube.status();

@@ -9,6 +9,7 @@
 #include "capture/base/file.h"
 #include "fit/cube/table_file.h"
 #include "tests/fit/cube/evaluator.h"
+#include "tests/support/temporary_folder.h"
 
 namespace eyebox::fit {
 namespace {
@@ -17,7 +18,8 @@ using evaluator::Display;
 using evaluator::Real;
 
 Cube3d WrittenAndReadBack(const TableDesign& table) {
-  const auto file = std::filesystem::path(testing::TempDir()) / "strip_design_test.png";
+  const TemporaryFolder folder;
+  const auto file = folder / "strip_design_test.png";
   EXPECT_TRUE(WriteFileAtomically(file, *EncodeTable(table)).ok());
   return *ReadStrip(file);
 }

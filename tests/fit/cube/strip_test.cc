@@ -7,6 +7,7 @@
 #include "capture/base/file.h"
 #include "capture/base/image_file.h"
 #include "fit/cube/table_file.h"
+#include "tests/support/temporary_folder.h"
 
 namespace eyebox::fit {
 namespace {
@@ -15,7 +16,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 std::filesystem::path Scratch(const std::string& name) {
-  return std::filesystem::path(testing::TempDir()) / name;
+  static const TemporaryFolder folder;
+  return folder / name;
 }
 
 TableDesign ThreeEntries() {

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "capture/base/file.h"
+#include "tests/support/temporary_folder.h"
 
 namespace eyebox::fit {
 namespace {
@@ -16,7 +17,8 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 std::filesystem::path Scratch(const std::string& name) {
-  return std::filesystem::path(testing::TempDir()) / name;
+  static const TemporaryFolder folder;
+  return folder / name;
 }
 
 TEST(TableFileTest, WhatIsWrittenIsReadBackBitForBit) {

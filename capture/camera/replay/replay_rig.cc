@@ -52,7 +52,7 @@ class Tape {
     const std::span<const CaptureEntry> captures = reader_->Captures();
     const CaptureEntry* found = nullptr;
     for (const CaptureEntry& capture : captures) {
-      if (!Matches(capture.spec, spec)) continue;
+      if (!capture.suspect.empty() || !Matches(capture.spec, spec)) continue;
       if (!found || TimesShown(capture) < TimesShown(*found)) found = &capture;
     }
     if (!found) {

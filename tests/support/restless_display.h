@@ -37,6 +37,7 @@ struct RestlessDisplay {
   DisplayFaultOf fault;
   ManualClock* clock = nullptr;
   double bias_dn = 0;             // counts of the dark, which no fault changes
+  int saturated_dn = 4095;        // counts that stay there
   int64_t frame_ns = 10'000'000;  // that the clock advances by each exposure
   int64_t presented_ns = 0;
   DisplayMoment moment = {};
@@ -97,6 +98,10 @@ class RestlessCamera final : public Camera {
     const DisplayFault fault = display_->fault(moment);
     auto counts = std::make_shared<std::vector<uint16_t>>();
     for (const uint16_t count : frame.view.pixels_dn) {
+      if (count >= display_->saturated_dn) {
+        counts->push_back(count);
+        continue;
+      }
       const double dn =
           display_->bias_dn + fault.factor * (count - display_->bias_dn) + fault.glow_dn;
       counts->push_back(static_cast<uint16_t>(std::clamp(std::lround(dn), 0L, 65535L)));

@@ -20,6 +20,7 @@
 #include "fit/cube/table_file.h"
 #include "fit/field/common_exponent.h"
 #include "optics/uniformity/uniformity_map.h"
+#include "service/preflight/certification.h"
 #include "service/report/report.h"
 #include "service/result_json.h"
 #include "service/results/activation.h"
@@ -116,6 +117,14 @@ void AddWarnings(const MeasuredLevels& levels, v1::RunResult& result) {
   for (const v1::CubeResult& cube : result.cubes()) add(cube.warnings());
 }
 
+void AddCertification(const Certification& certification, v1::RunResult& result) {
+  result.set_certified(certification.certified);
+  result.set_certification_reason(certification.reason);
+  if (!certification.certified) {
+    result.add_warnings(absl::StrCat("not certified: ", certification.reason));
+  }
+}
+
 void ListFiles(v1::RunResult& result) {
   std::vector<std::string> files = {"uniformity.json", "activation.json", "result.json",
                                     "report.html"};
@@ -146,6 +155,7 @@ absl::Status WriteReport(const std::filesystem::path& file, const Findings& foun
 
 // result.json comes last: where it stands, everything that it names is there.
 absl::StatusOr<v1::RunResult> Write(const Findings& found, const capture::RecordingHeader& header,
+                                    const Certification& certification,
                                     const std::filesystem::path& out) {
   v1::RunResult result;
   std::error_code absent;
@@ -153,6 +163,7 @@ absl::StatusOr<v1::RunResult> Write(const Findings& found, const capture::Record
   EYEBOX_RETURN_IF_ERROR(DescribeSteps(found, header, out, result));
   AddSummary(result);
   AddWarnings(found.levels, result);
+  AddCertification(certification, result);
   ListFiles(result);
   EYEBOX_RETURN_IF_ERROR(WriteJson(out / "uniformity.json", result.uniformity()));
   EYEBOX_RETURN_IF_ERROR(WriteJson(out / "activation.json", result.activation()));
@@ -179,6 +190,7 @@ constexpr double kCaptureShare = 0.5;  // of the time of a run that captures fir
 CapturePlan PlanOf(const capture::RecordingReader& recording) {
   CapturePlan plan;
   for (const capture::CaptureEntry& entry : recording.Captures()) {
+    if (!entry.suspect.empty()) continue;  // not to be used, so not to be replayed
     plan.captures.push_back(entry.spec);
     plan.captures.back().repeats = entry.frame_count;
   }
@@ -195,7 +207,9 @@ absl::StatusOr<v1::RunResult> RunRecording(const std::filesystem::path& recordin
   auto found = Measure(*reader, options, watcher);
   if (!found.ok()) return Within(recording, found.status());
   EYEBOX_RETURN_IF_ERROR(watcher.Reach(0.95, "writing results"));
-  EYEBOX_ASSIGN_OR_RETURN(v1::RunResult result, Write(*found, reader->Header(), out));
+  const Certification certification = CertificationOf(recording, reader->Header());
+  EYEBOX_ASSIGN_OR_RETURN(v1::RunResult result,
+                          Write(*found, reader->Header(), certification, out));
   if (watcher.progress) watcher.progress({1, "done"});
   return result;
 }
@@ -205,11 +219,18 @@ absl::StatusOr<v1::RunResult> RunRig(const capture::RigConfig& config,
                                      const std::filesystem::path& out, const RunOptions& options,
                                      const Watcher& watcher) {
   EYEBOX_RETURN_IF_ERROR(ValidateOptions(options));
+  v1::PreflightResult preflight;
+  if (!options.preflight.empty()) {
+    EYEBOX_ASSIGN_OR_RETURN(preflight, ReadPreflight(options.preflight));
+  }
   EYEBOX_ASSIGN_OR_RETURN(capture::Rig rig, capture::OpenRig(config, SystemClock()));
   EYEBOX_ASSIGN_OR_RETURN(const CapturePlan plan, capture::MakeGreyPlan({}));
   EYEBOX_RETURN_IF_ERROR(RecordPlan(rig, plan, recording, watcher.Part(0, kCaptureShare)).status());
   if (rig.origin == capture::RecordingOrigin::kSimulated) {
     EYEBOX_RETURN_IF_ERROR(capture::WriteSimTruth(recording, config));
+  }
+  if (!options.preflight.empty()) {
+    EYEBOX_RETURN_IF_ERROR(WritePreflight(recording, preflight));
   }
   return RunRecording(recording, out, options, watcher.Part(kCaptureShare, 1));
 }
@@ -225,6 +246,10 @@ absl::StatusOr<v1::RunResult> ReplayRecording(const std::filesystem::path& recor
   EYEBOX_ASSIGN_OR_RETURN(capture::Rig rig, capture::OpenRig(config, SystemClock()));
   EYEBOX_RETURN_IF_ERROR(
       RecordPlan(rig, PlanOf(*original), replayed, watcher.Part(0, kCaptureShare)).status());
+  if (std::filesystem::exists(recording / kPreflightFile)) {
+    EYEBOX_ASSIGN_OR_RETURN(const v1::PreflightResult preflight, ReadPreflight(recording));
+    EYEBOX_RETURN_IF_ERROR(WritePreflight(replayed, preflight));
+  }
   return RunRecording(replayed, out, options, watcher.Part(kCaptureShare, 1));
 }
 

@@ -15,6 +15,9 @@ namespace eyebox::service {
 struct RunOptions {
   int hdrp_cube_size = 32;  // 2 to 129
   int pps_strip_size = 32;  // 2 to 32
+  // Of a rig that is captured: preflight.json, or the folder that holds it, to be kept beside the
+  // recording. Without one the result is not certified.
+  std::filesystem::path preflight = {};
 };
 
 // Reduces, maps, fits, designs and certifies, and writes into `out` (created if missing):

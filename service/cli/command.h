@@ -35,6 +35,7 @@ void AddReduce(CLI::App& app, Work& work);
 void AddUniformity(CLI::App& app, Work& work);
 void AddFit(CLI::App& app, Work& work);
 void AddCube(CLI::App& app, Work& work);
+void AddPreflight(CLI::App& app, Work& work);
 void AddRun(CLI::App& app, Work& work);
 void AddReplay(CLI::App& app, Work& work);
 void AddVerifyFiles(CLI::App& app, Work& work);

@@ -15,6 +15,7 @@ namespace {
 constexpr int kUsageExitCode = 2;
 
 void AddAllCommands(CLI::App& app, Work& work) {
+  AddPreflight(app, work);
   AddRun(app, work);
   AddReplay(app, work);
   AddImport(app, work);

@@ -33,6 +33,7 @@ void AddImport(CLI::App& app, Work& work);
 void AddSimulate(CLI::App& app, Work& work);
 void AddReduce(CLI::App& app, Work& work);
 void AddUniformity(CLI::App& app, Work& work);
+void AddCharacterize(CLI::App& app, Work& work);
 void AddFit(CLI::App& app, Work& work);
 void AddCube(CLI::App& app, Work& work);
 void AddPreflight(CLI::App& app, Work& work);

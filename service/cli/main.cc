@@ -22,6 +22,7 @@ void AddAllCommands(CLI::App& app, Work& work) {
   AddSimulate(app, work);
   AddReduce(app, work);
   AddUniformity(app, work);
+  AddCharacterize(app, work);
   AddFit(app, work);
   AddCube(app, work);
   AddVerifyFiles(app, work);

@@ -116,9 +116,10 @@ Check Judge(Check check, const LogLine& line, const LadderOptions& options) {
   }
   if (std::abs(line.slope - 1) > check.threshold || std::abs(line.slope - 1) > 0.05) {
     return std::move(check).Failed(
-        absl::StrFormat("the counts are no measure of light: a gamma or another tone curve (here "
-                        "about exponent %.2f) is applied to them",
-                        line.slope),
+        absl::StrFormat(
+            "the counts are no measure of light: they grow as the exposure to the power "
+            "%.2f, so a gamma or another tone curve is applied to them",
+            line.slope),
         "switch gamma, lookup table, contrast and HDR modes off, or set gamma to 1");
   }
   if (line.largest_residual > options.largest_residual) {

@@ -84,7 +84,7 @@ Check CheckRollingShutter(std::span<const std::vector<double>> row_means_dn,
                    {"band_amplitude", band.amplitude, 0, "1"}};
   if (band.false_alarm_probability > options.false_alarm_probability) return check;
   return std::move(check).Failed(
-      absl::StrFormat("bands every %.1f rows, %.2g %% high: a rolling shutter sees the display "
+      absl::StrFormat("bands every %.1f rows, %.3g %% high: a rolling shutter sees the display "
                       "flash",
                       band.period_rows, 100 * band.amplitude),
       "switch the camera to global shutter or global reset; if it has none, expose only for whole "

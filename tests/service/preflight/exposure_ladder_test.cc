@@ -41,7 +41,7 @@ TEST(ExposureLadder, GivesTheSigmaOfItsSlope) {
 TEST(ExposureLadder, NamesGammaAndItsExponent) {
   const Check check = CheckExposureLadder(Ladder(0.45));
   EXPECT_EQ(check.verdict, Verdict::kFailed);
-  EXPECT_THAT(check.cause, HasSubstr("exponent 0.45"));
+  EXPECT_THAT(check.cause, HasSubstr("to the power 0.45"));
 }
 
 TEST(ExposureLadder, FailsJustBeyondItsThreshold) {

@@ -40,7 +40,9 @@ void AddPreflight(CLI::App& app, Work& work);
 void AddRun(CLI::App& app, Work& work);
 void AddReplay(CLI::App& app, Work& work);
 void AddVerifyFiles(CLI::App& app, Work& work);
+void AddRecover(CLI::App& app, Work& work);
 void AddPack(CLI::App& app, Work& work);
+void AddExport(CLI::App& app, Work& work);
 void AddServe(CLI::App& app, Work& work);
 
 }  // namespace eyebox::service::cli

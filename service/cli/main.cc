@@ -26,7 +26,9 @@ void AddAllCommands(CLI::App& app, Work& work) {
   AddFit(app, work);
   AddCube(app, work);
   AddVerifyFiles(app, work);
+  AddRecover(app, work);
   AddPack(app, work);
+  AddExport(app, work);
   AddServe(app, work);
 }
 

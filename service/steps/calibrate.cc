@@ -29,7 +29,8 @@ absl::StatusOr<optics::NoiseModel> MeasureNoise(capture::RecordingReader& record
   const auto shortest = std::min_element(darks.begin(), darks.end(), [](auto& a, auto& b) {
     return a.setting.exposure_s < b.setting.exposure_s;
   });
-  optics::PhotonTransfer transfer(*shortest, defects.defective);
+  optics::PhotonTransfer transfer(*shortest, defects.defective,
+                                  {.colour_period_px = ColourPeriodPx(recording.Header())});
   const auto captures = recording.Captures();
   for (size_t i = 0; i < captures.size(); ++i) {
     EYEBOX_RETURN_IF_ERROR(
@@ -58,8 +59,10 @@ absl::StatusOr<std::optional<optics::FlatField>> MeasureFlatOf(
     }
   }
   EYEBOX_ASSIGN_OR_RETURN(const auto stacks, StackCaptures(recording, captures));
-  EYEBOX_ASSIGN_OR_RETURN(optics::FlatField flat,
-                          optics::MeasureFlat(stacks, calibration, LuminanceOf(captures[0]->spec)));
+  EYEBOX_ASSIGN_OR_RETURN(
+      optics::FlatField flat,
+      optics::MeasureFlat(stacks, calibration, LuminanceOf(captures[0]->spec),
+                          {.colour_period_px = ColourPeriodPx(recording.Header())}));
   return flat;
 }
 

@@ -100,4 +100,12 @@ absl::StatusOr<std::vector<optics::Stack>> StackCaptures(
   return stacks;
 }
 
+int ColourPeriodPx(const capture::RecordingHeader& header) {
+  const std::string& format = header.camera.pixel_format;
+  // "Mono12p" as GenICam names it; "GREY" and "Y10" as V4L2 does.
+  const bool grey = format.starts_with("Mono") || format.starts_with("GREY") ||
+                    (format.size() > 1 && format[0] == 'Y' && format[1] >= '0' && format[1] <= '9');
+  return grey || header.origin == capture::RecordingOrigin::kSimulated ? 1 : 2;
+}
+
 }  // namespace eyebox::service

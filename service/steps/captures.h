@@ -37,6 +37,10 @@ absl::StatusOr<std::vector<StimulusCaptures>> GreyLevels(const capture::Recordin
 absl::StatusOr<std::vector<optics::Stack>> StackCaptures(
     capture::RecordingReader& recording, const std::vector<const capture::CaptureEntry*>& captures);
 
+// Distance of neighbours of one colour: 1 of a grey sensor, 2 of a Bayer mosaic. 2 also where the
+// recording does not tell (imported frames): right for both, if less sharp for a grey one.
+int ColourPeriodPx(const capture::RecordingHeader& header);
+
 }  // namespace eyebox::service
 
 #endif  // EYEBOX_SERVICE_STEPS_CAPTURES_H_

@@ -77,7 +77,8 @@ absl::StatusOr<optics::ReducedLevel> ReduceCaptures(capture::RecordingReader& re
                                                     const StimulusCaptures& group,
                                                     const optics::Calibration& calibration) {
   EYEBOX_ASSIGN_OR_RETURN(const auto stacks, StackCaptures(recording, group.captures));
-  return optics::ReduceLevel(stacks, calibration);
+  return optics::ReduceLevel(stacks, calibration,
+                             {.colour_period_px = ColourPeriodPx(recording.Header())});
 }
 
 absl::StatusOr<MeasuredLevels> ReduceGreyLevels(capture::RecordingReader& recording,

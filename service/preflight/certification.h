@@ -8,6 +8,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "capture/recording/header.h"
+#include "eyebox/v1/preflight.pb.h"
 #include "eyebox/v1/results.pb.h"
 
 namespace eyebox::service {

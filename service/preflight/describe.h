@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "capture/camera/rig.h"
-#include "eyebox/v1/results.pb.h"
+#include "eyebox/v1/preflight.pb.h"
 #include "service/preflight/check.h"
 
 namespace eyebox::service {

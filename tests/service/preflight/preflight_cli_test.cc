@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "eyebox/v1/results.pb.h"
+#include "eyebox/v1/preflight.pb.h"
 #include "tests/service/run_eyebox.h"
 
 namespace eyebox::service {

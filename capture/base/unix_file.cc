@@ -110,6 +110,12 @@ absl::Status UnixFile::WriteAt(uint64_t offset, const void* data, size_t size) {
   return absl::OkStatus();
 }
 
+void UnixFile::StartWriting(uint64_t offset, uint64_t size) {
+  // What goes wrong on the way is reported by the next sync, and only there.
+  static_cast<void>(::sync_file_range(descriptor_, static_cast<off64_t>(offset),
+                                      static_cast<off64_t>(size), SYNC_FILE_RANGE_WRITE));
+}
+
 absl::Status UnixFile::Reserve(uint64_t size) {
   int error_number = 0;
   do {

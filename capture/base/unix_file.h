@@ -37,6 +37,8 @@ class UnixFile {
   // Also DataLoss: the file ends before `offset + size`.
   absl::Status ReadAt(uint64_t offset, void* data, size_t size) const;
   absl::Status WriteAt(uint64_t offset, const void* data, size_t size);
+  // A hint to write these bytes out meanwhile, so that a later sync waits less; promises nothing.
+  void StartWriting(uint64_t offset, uint64_t size);
   // posix_fallocate: later writes below `size` do not fail for want of space.
   absl::Status Reserve(uint64_t size);
   // A failed sync must not be tried again: the kernel may have dropped the pages.

@@ -83,6 +83,7 @@ class FileCapture final : public CaptureWriter {
                                frame.view.pixels_dn.size_bytes())));
     EYEBOX_RETURN_IF_ERROR(
         Remember(file_.WriteAt(entry_.RecordOffset(index), &record, sizeof(record))));
+    file_.StartWriting(entry_.FrameOffset(index), entry_.FrameBytes());
     ++appended_;
     return absl::OkStatus();
   }

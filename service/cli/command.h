@@ -29,6 +29,8 @@ void AddCommand(CLI::App& app, Work& work, const std::string& name, const std::s
   command->callback([&work, options, run] { work = [options, run] { return run(*options); }; });
 }
 
+void AddCapture(CLI::App& app, Work& work);
+void AddDevices(CLI::App& app, Work& work);
 void AddImport(CLI::App& app, Work& work);
 void AddSimulate(CLI::App& app, Work& work);
 void AddReduce(CLI::App& app, Work& work);

@@ -17,6 +17,8 @@ constexpr int kUsageExitCode = 2;
 void AddAllCommands(CLI::App& app, Work& work) {
   AddPreflight(app, work);
   AddRun(app, work);
+  AddDevices(app, work);
+  AddCapture(app, work);
   AddReplay(app, work);
   AddImport(app, work);
   AddSimulate(app, work);

@@ -3,6 +3,7 @@
 
 #include "capture/base/status.h"
 #include "service/cli/command.h"
+#include "service/cli/plan_options.h"
 #include "service/cli/rig_source.h"
 #include "service/cli/terminal.h"
 #include "service/simulate.h"
@@ -27,21 +28,6 @@ absl::Status Run(const Options& options) {
   std::printf("Wrote %s, with the truth in %s\n", result.recording().c_str(),
               result.truth().c_str());
   return absl::OkStatus();
-}
-
-void BindPlan(CLI::App& command, capture::PlanOptions& plan) {
-  command.add_option("--levels", plan.levels, "Grey levels, 0 and 1 included")
-      ->check(CLI::Range(2, 4096))
-      ->capture_default_str();
-  command.add_option("--exposures", plan.exposures_s, "Exposure times in s, ascending, by comma")
-      ->delimiter(',')
-      ->capture_default_str();
-  command.add_option("--repeats", plan.repeats, "Frames per level and exposure")
-      ->capture_default_str();
-  command.add_option("--dark-repeats", plan.dark_repeats, "Dark frames per exposure")
-      ->capture_default_str();
-  command.add_option("--flat-repeats", plan.flat_repeats, "Flat frames per exposure; 0: no flats")
-      ->capture_default_str();
 }
 
 }  // namespace

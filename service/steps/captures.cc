@@ -41,7 +41,7 @@ std::vector<const capture::CaptureEntry*> CapturesOfKind(const capture::Recordin
                                                          FrameKind kind) {
   std::vector<const capture::CaptureEntry*> found;
   for (const capture::CaptureEntry& entry : recording.Captures()) {
-    if (entry.spec.kind == kind) found.push_back(&entry);
+    if (entry.spec.kind == kind && entry.suspect.empty()) found.push_back(&entry);
   }
   return found;
 }

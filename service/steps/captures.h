@@ -19,6 +19,7 @@ struct StimulusCaptures {
   std::vector<const capture::CaptureEntry*> captures;
 };
 
+// Suspect captures are left out.
 std::vector<const capture::CaptureEntry*> CapturesOfKind(const capture::RecordingReader& recording,
                                                          FrameKind kind);
 

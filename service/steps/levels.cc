@@ -8,6 +8,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "capture/base/status.h"
+#include "service/steps/drift.h"
 #include "service/steps/reference_disk.h"
 
 namespace eyebox::service {
@@ -44,6 +45,16 @@ absl::Status NoUsableLevel(const std::vector<std::string>& reasons) {
 
 absl::Status InLevel(const StimulusCaptures& group, const absl::Status& status) {
   return absl::Status(status.code(), absl::StrCat(NameOf(group), ": ", status.message()));
+}
+
+// Corrects for what the display lost until then; returns the relative sigma of that.
+absl::StatusOr<double> CorrectForDrift(capture::RecordingReader& recording,
+                                       const StimulusCaptures& group, const optics::Drift& drift,
+                                       optics::LuminanceImage& luminance) {
+  if (drift.order == 0) return 0.0;
+  EYEBOX_ASSIGN_OR_RETURN(const double time_s, TimeOf(recording, group.captures));
+  optics::CorrectDrift(drift, time_s, luminance);
+  return drift.SigmaAt(time_s) / drift.FactorAt(time_s);
 }
 
 void AddToStack(const optics::ReducedLevel& level, double drive, MeasuredLevels& levels) {
@@ -86,8 +97,10 @@ absl::StatusOr<MeasuredLevels> ReduceGreyLevels(capture::RecordingReader& record
                                                 const optics::Calibration& calibration,
                                                 const Watcher& watcher) {
   EYEBOX_ASSIGN_OR_RETURN(const auto groups, GreyLevels(recording, series));
+  EYEBOX_ASSIGN_OR_RETURN(const MeasuredDrift drift, MeasureDrift(recording));
   MeasuredLevels levels;
   std::vector<DiskReading> readings;
+  double scale_relative_sigma = 0;  // without that of the drift, which differs between levels
   for (size_t i = 0; i < groups.size(); ++i) {
     EYEBOX_RETURN_IF_ERROR(
         watcher.Reach(static_cast<double>(i) / static_cast<double>(groups.size()),
@@ -99,15 +112,20 @@ absl::StatusOr<MeasuredLevels> ReduceGreyLevels(capture::RecordingReader& record
       continue;
     }
     const double drive = DriveOf(groups[i]);
+    scale_relative_sigma = reduced->luminance.scale_relative_sigma;
+    EYEBOX_ASSIGN_OR_RETURN(const double drift_sigma,
+                            CorrectForDrift(recording, groups[i], drift.drift, reduced->luminance));
     readings.push_back(ReadReferenceDisk(reduced->luminance, calibration, drive));
+    readings.back().relative_sigma = drift_sigma;
     AddToStack(*reduced, drive, levels);
     levels.reference = {drive, *std::move(reduced)};
   }
   if (readings.empty()) return NoUsableLevel(levels.warnings);
+  levels.warnings.insert(levels.warnings.begin(), drift.warnings.begin(), drift.warnings.end());
   const optics::LuminanceImage& brightest = levels.reference.reduced.luminance;
-  EYEBOX_ASSIGN_OR_RETURN(
-      levels.series, MakeLevelSeries(readings, brightest.scale_relative_sigma, brightest.image.unit,
-                                     "full field, image centre"));
+  EYEBOX_ASSIGN_OR_RETURN(levels.series,
+                          MakeLevelSeries(readings, scale_relative_sigma, brightest.image.unit,
+                                          "full field, image centre"));
   return levels;
 }
 
@@ -117,6 +135,7 @@ absl::StatusOr<GreyLevel> ReduceBrightestLevel(capture::RecordingReader& recordi
                                                const Watcher& watcher) {
   EYEBOX_ASSIGN_OR_RETURN(auto groups, GreyLevels(recording, series));
   std::reverse(groups.begin(), groups.end());
+  EYEBOX_ASSIGN_OR_RETURN(const MeasuredDrift drift, MeasureDrift(recording));
   std::vector<std::string> reasons;
   for (size_t i = 0; i < groups.size(); ++i) {
     EYEBOX_RETURN_IF_ERROR(
@@ -124,7 +143,11 @@ absl::StatusOr<GreyLevel> ReduceBrightestLevel(capture::RecordingReader& recordi
                       "luminance of the brightest level"));
     auto reduced = ReduceCaptures(recording, groups[i], calibration);
     if (!reduced.ok()) return InLevel(groups[i], reduced.status());
-    if (IsUsable(*reduced)) return GreyLevel{DriveOf(groups[i]), *std::move(reduced)};
+    if (IsUsable(*reduced)) {
+      EYEBOX_RETURN_IF_ERROR(
+          CorrectForDrift(recording, groups[i], drift.drift, reduced->luminance).status());
+      return GreyLevel{DriveOf(groups[i]), *std::move(reduced)};
+    }
     reasons.push_back(WhyUnusable(groups[i], *reduced));
   }
   return NoUsableLevel(reasons);

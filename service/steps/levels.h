@@ -45,7 +45,8 @@ absl::StatusOr<optics::ReducedLevel> ReduceCaptures(capture::RecordingReader& re
                                                     const optics::Calibration& calibration);
 
 // All grey levels. A level with no value at the reference point or over most of the field (it
-// saturates even the shortest exposure) is left out with a warning.
+// saturates even the shortest exposure) is left out with a warning. Where the reference patch of
+// the recording drifted, every level is corrected for it, with a warning.
 // Memory: one level, the brightest one, and four bytes per level and pixel.
 // Errors: those of ReduceCaptures; FailedPrecondition (no grey level, none of them usable).
 absl::StatusOr<MeasuredLevels> ReduceGreyLevels(capture::RecordingReader& recording,

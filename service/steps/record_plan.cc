@@ -1,19 +1,27 @@
 #include "service/steps/record_plan.h"
 
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "capture/base/clock.h"
 #include "capture/base/status.h"
+#include "capture/recording/recover.h"
+#include "capture/recording/remaining.h"
 #include "capture/recording/writer.h"
+#include "service/steps/capture_log.h"
 
 namespace eyebox::service {
+namespace {
 
-absl::StatusOr<capture::RunReport> RecordPlan(capture::Rig& rig, const CapturePlan& plan,
-                                              const std::filesystem::path& recording,
-                                              const Watcher& watcher) {
-  EYEBOX_ASSIGN_OR_RETURN(
-      const auto writer,
-      capture::RecordingWriter::Create(recording, capture::MakeHeader(rig, plan, *SystemClock()),
-                                       SystemClock()));
+bool IsReplay(const capture::Rig& rig) {
+  return absl::StartsWith(rig.config.camera_uri, "replay:");
+}
+
+capture::RunOptions OptionsFor(const capture::Rig& rig, const std::filesystem::path& recording,
+                               const Watcher& watcher, const Settle& settle) {
   capture::RunOptions options;
   options.cancelled = watcher.cancelled;
   options.progress = [&watcher](const capture::RunProgress& progress) {
@@ -21,7 +29,112 @@ absl::StatusOr<capture::RunReport> RecordPlan(capture::Rig& rig, const CapturePl
     watcher.progress({static_cast<double>(progress.captures_done) / progress.captures_total,
                       absl::StrCat("recording ", progress.captures_total, " captures")});
   };
-  return capture::RunPlan(rig, plan, *writer, options);
+  options.published = [recording](const capture::CaptureFigures& figures) {
+    return LogCapture(recording, figures);
+  };
+  if (!IsReplay(rig)) options.settle = settle;
+  if (!MeasuresWithDevice(rig)) return options;
+  if (!options.settle) options.settle = capture::SettleOptions{};
+  options.reopen = [config = rig.config]() -> absl::StatusOr<std::unique_ptr<capture::Camera>> {
+    EYEBOX_ASSIGN_OR_RETURN(capture::Rig again, capture::OpenRig(config, SystemClock()));
+    return std::move(again.camera);
+  };
+  return options;
+}
+
+absl::Status CheckSameRig(const capture::RecordingHeader& header, const capture::Rig& rig,
+                          const std::string& where) {
+  const capture::CameraInfo& now = rig.camera->Info();
+  const capture::CameraInfo& then = header.camera;
+  if (header.rig.camera_uri != rig.config.camera_uri || header.rig.seed != rig.config.seed) {
+    return BadInput(
+        where,
+        absl::StrCat("was begun with ", header.rig.camera_uri, ", seed ", header.rig.seed,
+                     ", and is to go on with ", rig.config.camera_uri, ", seed ", rig.config.seed),
+        "resume it with the rig that it was begun with");
+  }
+  if (then.serial == now.serial && then.sensor_size == now.sensor_size &&
+      then.significant_bits == now.significant_bits) {
+    return absl::OkStatus();
+  }
+  return BadInput(where,
+                  absl::StrCat("was begun with camera ", then.model, " ", then.serial, ", ",
+                               then.significant_bits, " bits, and now ", now.model, " ", now.serial,
+                               ", ", now.significant_bits, " bits answers"),
+                  "connect the camera that it was begun with, set as it was");
+}
+
+absl::Status CheckSamePlan(const CapturePlan& recorded, const CapturePlan& asked,
+                           const std::string& where) {
+  const auto [first, second] = std::ranges::mismatch(recorded.captures, asked.captures);
+  if (first == recorded.captures.end() && second == asked.captures.end()) return absl::OkStatus();
+  return BadInput(
+      where,
+      absl::StrCat("follows another plan: ", recorded.captures.size(), " captures instead of ",
+                   asked.captures.size(), ", and they differ from capture ",
+                   first - recorded.captures.begin() + 1, " on"),
+      "resume without options of the plan, or begin another recording");
+}
+
+// The first frame of each, which is near enough for what readings are compared by.
+absl::StatusOr<std::vector<capture::Reading>> EarlierReadings(capture::RecordingReader& recording) {
+  std::vector<capture::Reading> readings;
+  for (const capture::CaptureEntry& entry : recording.Captures()) {
+    if (!entry.suspect.empty()) continue;
+    bool seen = false;
+    const absl::Status status = recording.VisitFrames(entry, [&](const Frame& frame) {
+      readings.push_back(
+          {.number = entry.number, .spec = entry.spec, .mean = capture::MeanOf(frame.view)});
+      seen = true;
+      return absl::CancelledError("one frame is enough");
+    });
+    if (!seen) return status;
+  }
+  return readings;
+}
+
+// A simulated headset counts its presentations, a replay goes through its captures: so they stand
+// where they stood.
+absl::Status CatchUp(capture::Rig& rig, const capture::RecordingReader& recording) {
+  if (MeasuresWithDevice(rig)) return absl::OkStatus();
+  for (const capture::CaptureEntry& entry : recording.Captures()) {
+    EYEBOX_RETURN_IF_ERROR(rig.presenter->Present(entry.spec));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+bool MeasuresWithDevice(const capture::Rig& rig) {
+  return rig.origin == capture::RecordingOrigin::kCaptured && !IsReplay(rig);
+}
+
+absl::StatusOr<capture::RunReport> RecordPlan(capture::Rig& rig, const CapturePlan& plan,
+                                              const std::filesystem::path& recording,
+                                              const Watcher& watcher, const Settle& settle) {
+  EYEBOX_ASSIGN_OR_RETURN(
+      const auto writer,
+      capture::RecordingWriter::Create(recording, capture::MakeHeader(rig, plan, *SystemClock()),
+                                       SystemClock()));
+  return capture::RunPlan(rig, plan, *writer, OptionsFor(rig, recording, watcher, settle));
+}
+
+absl::StatusOr<capture::RunReport> ResumePlan(capture::Rig& rig,
+                                              const std::optional<CapturePlan>& plan,
+                                              const std::filesystem::path& recording,
+                                              const Watcher& watcher, const Settle& settle) {
+  EYEBOX_RETURN_IF_ERROR(capture::RecoverRecording(recording).status());
+  EYEBOX_ASSIGN_OR_RETURN(const auto reader, capture::RecordingReader::Open(recording));
+  const capture::RecordingHeader& header = reader->Header();
+  EYEBOX_RETURN_IF_ERROR(CheckSameRig(header, rig, recording.string()));
+  if (plan) EYEBOX_RETURN_IF_ERROR(CheckSamePlan(header.plan, *plan, recording.string()));
+  const CapturePlan left = capture::RemainingCaptures(header.plan, reader->Captures());
+  if (left.captures.empty()) return capture::RunReport{};
+  capture::RunOptions options = OptionsFor(rig, recording, watcher, settle);
+  EYEBOX_ASSIGN_OR_RETURN(options.earlier, EarlierReadings(*reader));
+  EYEBOX_RETURN_IF_ERROR(CatchUp(rig, *reader));
+  EYEBOX_ASSIGN_OR_RETURN(const auto writer, capture::RecordingWriter::Resume(recording));
+  return capture::RunPlan(rig, left, *writer, options);
 }
 
 }  // namespace eyebox::service

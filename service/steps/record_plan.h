@@ -1,8 +1,9 @@
-// Captures a plan into a new recording.
+// Captures a plan into a recording, new or interrupted.
 #ifndef EYEBOX_SERVICE_STEPS_RECORD_PLAN_H_
 #define EYEBOX_SERVICE_STEPS_RECORD_PLAN_H_
 
 #include <filesystem>
+#include <optional>
 
 #include "absl/status/statusor.h"
 #include "capture/run.h"
@@ -10,11 +11,29 @@
 
 namespace eyebox::service {
 
-// `recording` must not exist. Captures that were published before an error stay.
+// Whether frames come from a device, so that a scene takes time and a camera may be lost.
+bool MeasuresWithDevice(const capture::Rig& rig);
+
+// Empty: as SettleOptions() has it with a device, not at all otherwise. A replay never settles: it
+// has no frames to spare.
+using Settle = std::optional<capture::SettleOptions>;
+
+// `recording` must not exist. Captures that were published before an error stay. With a device the
+// camera is opened anew where it is lost. How each capture went stands in CaptureLogPath().
 // Errors: those of RecordingWriter::Create() and of RunPlan().
 absl::StatusOr<capture::RunReport> RecordPlan(capture::Rig& rig, const CapturePlan& plan,
                                               const std::filesystem::path& recording,
-                                              const Watcher& watcher);
+                                              const Watcher& watcher, const Settle& settle = {});
+
+// Recovers what a crash left and takes the captures that are still to be taken, suspect ones
+// included; the report counts those alone. With nothing left to take it has no capture.
+// Errors: those of RecoverRecording() and of RunPlan(); InvalidArgument (the recording was made
+// with another rig or camera, or it follows another plan than `plan`, where one is given: says
+// what differs).
+absl::StatusOr<capture::RunReport> ResumePlan(capture::Rig& rig,
+                                              const std::optional<CapturePlan>& plan,
+                                              const std::filesystem::path& recording,
+                                              const Watcher& watcher, const Settle& settle = {});
 
 }  // namespace eyebox::service
 

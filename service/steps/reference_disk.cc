@@ -33,7 +33,8 @@ fit::LevelReading MeanOf(const DiskReading& level, const std::vector<size_t>& pi
   fit::LevelReading reading;
   reading.drive = level.drive;
   reading.luminance = SumOver(pixels, level.luminance) / count;
-  reading.luminance_sigma = std::sqrt(SumOver(pixels, level.own_variance)) / count;
+  reading.luminance_sigma = std::hypot(std::sqrt(SumOver(pixels, level.own_variance)) / count,
+                                       level.relative_sigma * reading.luminance);
   if (reading.luminance < 0 && reading.luminance > -kBlackSigmas * reading.luminance_sigma) {
     reading.luminance = 0;
   }

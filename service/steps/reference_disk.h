@@ -30,6 +30,7 @@ struct DiskReading {
   std::vector<double> luminance;
   std::vector<double> own_variance;   // of this level alone
   std::vector<double> flat_variance;  // of the flat, common to all levels
+  double relative_sigma = 0;          // common to its pixels, not to other levels: of the drift
 };
 
 DiskReading ReadReferenceDisk(const optics::LuminanceImage& image,

@@ -1,0 +1,24 @@
+#include "service/cli/plan_options.h"
+
+namespace eyebox::service::cli {
+
+std::vector<CLI::Option*> BindPlan(CLI::App& command, capture::PlanOptions& plan) {
+  std::vector<CLI::Option*> options = {
+      command.add_option("--levels", plan.levels, "Grey levels, 0 and 1 included")
+          ->check(CLI::Range(2, 4096)),
+      command
+          .add_option("--exposures", plan.exposures_s, "Exposure times in s, ascending, by comma")
+          ->delimiter(','),
+      command.add_option("--repeats", plan.repeats, "Frames per level and exposure"),
+      command.add_option("--dark-repeats", plan.dark_repeats, "Dark frames per exposure"),
+      command.add_option("--flat-repeats", plan.flat_repeats,
+                         "Flat frames per exposure; 0: no flats"),
+      command.add_option("--reference-every", plan.reference_every,
+                         "Levels between two looks at the reference patch; 0: none"),
+      command.add_option("--reference-drive", plan.reference_drive,
+                         "Drive of the reference patch")};
+  for (CLI::Option* option : options) option->capture_default_str();
+  return options;
+}
+
+}  // namespace eyebox::service::cli

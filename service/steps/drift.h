@@ -1,0 +1,31 @@
+// The drift of the display while it was measured, from the reference patch of the recording.
+#ifndef EYEBOX_SERVICE_STEPS_DRIFT_H_
+#define EYEBOX_SERVICE_STEPS_DRIFT_H_
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "capture/recording/reader.h"
+#include "optics/photometry/drift.h"
+
+namespace eyebox::service {
+
+struct MeasuredDrift {
+  optics::Drift drift;                // of order 0 where none was found or none was looked for
+  std::vector<std::string> warnings;  // what was found, or why nothing could be
+};
+
+// Fits the captures of role kReference: mean count of the frames above the dark of their setting,
+// at the time of their first frame. A recording without references has no drift and no warning.
+// Errors: those of reading.
+absl::StatusOr<MeasuredDrift> MeasureDrift(capture::RecordingReader& recording);
+
+// CLOCK_MONOTONIC of the first frame of each capture, averaged: when a bracket was taken. It takes
+// seconds, in which no display drifts. `captures` is not empty. Errors: those of reading.
+absl::StatusOr<double> TimeOf(capture::RecordingReader& recording,
+                              const std::vector<const capture::CaptureEntry*>& captures);
+
+}  // namespace eyebox::service
+
+#endif  // EYEBOX_SERVICE_STEPS_DRIFT_H_

@@ -43,6 +43,11 @@ int Main(int argc, char** argv) {
       "Example:\n  eyebox run recording --out result");
   Work work;
   AddAllCommands(app, work);
+  const auto is_named = [&](const CLI::App* command) { return command->check_name(argv[1]); };
+  if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_named).empty()) {
+    std::fprintf(stderr, "eyebox: there is no command '%s'; eyebox --help lists them\n", argv[1]);
+    return kUsageExitCode;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

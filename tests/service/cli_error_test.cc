@@ -111,6 +111,12 @@ TEST_F(CliError, AFitThatIsNoneIsNamed) {
   EXPECT_FALSE(std::filesystem::exists(Path("a.cube")));
 }
 
+TEST_F(CliError, AnUnknownCommandIsNamed) {
+  const Outcome outcome = RunEyebox("measure rec");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("no command 'measure'"));
+}
+
 TEST_F(CliError, UsageIsTwo) {
   for (const char* arguments :
        {"", "measure", "fit", "fit rec --csv a.csv", "fit --csv a.csv --model cubic",

@@ -1,0 +1,141 @@
+// A display that warms up while it is measured, seen by the reduction of its levels.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "capture/camera/sim/sim_rig.h"
+#include "capture/plan.h"
+#include "service/steps/calibrate.h"
+#include "service/steps/drift.h"
+#include "service/steps/levels.h"
+#include "service/steps/record_plan.h"
+#include "tests/support/restless_display.h"
+#include "tests/support/temporary_folder.h"
+
+namespace eyebox::service {
+namespace {
+
+using capture::DisplayFault;
+using capture::DisplayMoment;
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+class DriftStep : public testing::Test {
+ protected:
+  // Every frame takes 10 ms of the clock. `lost_per_s` of the light is lost in a second.
+  std::unique_ptr<capture::RecordingReader> Record(const std::string& name, double lost_per_s,
+                                                   int reference_every = 2) {
+    ManualClock clock;
+    capture::SimParameters parameters;
+    auto rig = OpenSimRig({.name = "test", .camera_uri = "sim:rift-s-like", .seed = 5}, parameters,
+                          &clock);
+    EXPECT_TRUE(rig.ok()) << rig.status();
+    const auto fault = [lost_per_s](const DisplayMoment& moment) {
+      return DisplayFault{.factor = 1 - lost_per_s * static_cast<double>(moment.now_ns) / 1e9};
+    };
+    capture::MakeRestless(*rig, clock, parameters.sensor.bias_dn, fault);
+    capture::PlanOptions plan;
+    plan.levels = 9;
+    plan.dark_repeats = plan.flat_repeats = 4;
+    plan.reference_every = reference_every;
+    const auto report = RecordPlan(*rig, *capture::MakeGreyPlan(plan), folder_.path() / name, {});
+    EXPECT_TRUE(report.ok()) << report.status();
+    return *capture::RecordingReader::Open(folder_.path() / name);
+  }
+
+  static MeasuredLevels Reduce(capture::RecordingReader& recording) {
+    const auto calibration = CalibrateCamera(recording, {});
+    EXPECT_TRUE(calibration.ok()) << calibration.status();
+    auto levels = ReduceGreyLevels(recording, "", *calibration, {});
+    EXPECT_TRUE(levels.ok()) << levels.status();
+    return *std::move(levels);
+  }
+
+  // Largest and smallest luminance of a level of one recording relative to another.
+  static std::pair<double, double> Ratios(const MeasuredLevels& a, const MeasuredLevels& b) {
+    std::pair<double, double> extremes = {1e9, 0};
+    for (size_t i = 1; i < a.series.readings.size(); ++i) {  // level 0 is all noise
+      const double ratio = a.series.readings[i].luminance / b.series.readings[i].luminance;
+      extremes = {std::min(extremes.first, ratio), std::max(extremes.second, ratio)};
+    }
+    return extremes;
+  }
+
+  const TemporaryFolder folder_;
+};
+
+TEST_F(DriftStep, IsMeasuredFromTheReferences) {
+  const auto recording = Record("drifting", 0.08);
+  const auto measured = MeasureDrift(*recording);
+  ASSERT_TRUE(measured.ok()) << measured.status();
+  EXPECT_EQ(measured->drift.readings, 6);
+  ASSERT_EQ(measured->drift.order, 1);
+  const double middle = 1 - 0.08 * measured->drift.middle_s;
+  EXPECT_NEAR(measured->drift.per_hour, -0.08 * 3600 / middle, 4 * measured->drift.per_hour_sigma);
+  EXPECT_THAT(measured->warnings, Contains(AllOf(HasSubstr("drifted"), HasSubstr("per hour"))));
+}
+
+TEST_F(DriftStep, LevelsAreCorrectedToTheMiddleOfTheRecording) {
+  const auto steady = Reduce(*Record("steady", 0));
+  const auto recording = Record("drifting", 0.08);
+  const auto corrected = Reduce(*recording);
+  const auto uncorrected = Reduce(*Record("without references", 0.08, 0));
+  const auto [raw_low, raw_high] = Ratios(uncorrected, steady);
+  EXPECT_GT(raw_high / raw_low, 1.03) << "the drift is worth correcting";
+  const auto [low, high] = Ratios(corrected, steady);
+  EXPECT_LT(high / low, 1.005);
+  const double middle = 1 - 0.08 * MeasureDrift(*recording)->drift.middle_s;
+  EXPECT_NEAR(low, middle, 0.005);
+  EXPECT_THAT(corrected.warnings, Contains(HasSubstr("drifted")));
+  EXPECT_THAT(corrected.reference.reduced.luminance.image.history,
+              Contains(HasSubstr("CorrectDrift(order 1")));
+}
+
+TEST_F(DriftStep, ItsUncertaintyEntersEveryReadingAndNotTheScale) {
+  const auto steady = Reduce(*Record("steady", 0));
+  const auto drifting = Reduce(*Record("drifting", 0.08));
+  EXPECT_NEAR(drifting.series.scale_relative_sigma, steady.series.scale_relative_sigma,
+              1e-3 * steady.series.scale_relative_sigma);
+  const auto relative = [](const MeasuredLevels& levels) {
+    const auto& brightest = levels.series.readings.back();
+    return brightest.luminance_sigma / brightest.luminance;
+  };
+  EXPECT_GT(relative(drifting), relative(steady));
+}
+
+TEST_F(DriftStep, ASteadyDisplayIsLeftAlone) {
+  const auto recording = Record("steady", 0);
+  const auto measured = MeasureDrift(*recording);
+  ASSERT_TRUE(measured.ok());
+  EXPECT_EQ(measured->drift.order, 0);
+  EXPECT_THAT(measured->warnings, IsEmpty());
+  const auto levels = Reduce(*recording);
+  EXPECT_THAT(levels.warnings, IsEmpty());
+  EXPECT_THAT(levels.reference.reduced.luminance.image.history,
+              Not(Contains(HasSubstr("CorrectDrift"))));
+}
+
+TEST_F(DriftStep, TooFewReferencesAreSaid) {
+  const auto recording = Record("few", 0.08, 100);  // first and last alone
+  const auto measured = MeasureDrift(*recording);
+  ASSERT_TRUE(measured.ok()) << measured.status();
+  EXPECT_EQ(measured->drift.order, 0);
+  EXPECT_THAT(measured->warnings, Contains(HasSubstr("2 references")));
+}
+
+TEST_F(DriftStep, WithoutReferencesThereIsNothingToSay) {
+  const auto measured = MeasureDrift(*Record("none", 0.08, 0));
+  ASSERT_TRUE(measured.ok());
+  EXPECT_EQ(measured->drift.order, 0);
+  EXPECT_THAT(measured->warnings, IsEmpty());
+}
+
+}  // namespace
+}  // namespace eyebox::service

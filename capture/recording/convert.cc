@@ -10,7 +10,7 @@
 namespace eyebox::capture {
 namespace {
 
-constexpr int kLargestSide_px = 65535;
+constexpr int kLargestSidePx = 65535;
 constexpr size_t kLongestName = 63;
 
 absl::Status CheckRange(const std::string& where, double value, double minimum, double maximum) {
@@ -235,9 +235,9 @@ absl::StatusOr<RigConfig> FromProto(const v1::Rig& proto, const std::string& whe
 
 absl::StatusOr<CameraInfo> FromProto(const v1::CameraInfo& proto, const std::string& where) {
   EYEBOX_RETURN_IF_ERROR(
-      CheckRange(where + " sensor_width_px", proto.sensor_width_px(), 1, kLargestSide_px));
+      CheckRange(where + " sensor_width_px", proto.sensor_width_px(), 1, kLargestSidePx));
   EYEBOX_RETURN_IF_ERROR(
-      CheckRange(where + " sensor_height_px", proto.sensor_height_px(), 1, kLargestSide_px));
+      CheckRange(where + " sensor_height_px", proto.sensor_height_px(), 1, kLargestSidePx));
   EYEBOX_RETURN_IF_ERROR(CheckRange(where + " significant_bits", proto.significant_bits(), 1, 16));
   EYEBOX_RETURN_IF_ERROR(CheckNotNegative(where + " exposure_min_s", proto.exposure_min_s()));
   EYEBOX_RETURN_IF_ERROR(CheckNotNegative(where + " exposure_max_s", proto.exposure_max_s()));

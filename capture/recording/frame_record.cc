@@ -1,9 +1,8 @@
 #include "capture/recording/frame_record.h"
 
-#include <array>
+#include <algorithm>
 #include <bit>
 #include <cstddef>
-#include <cstring>
 #include <limits>
 #include <optional>
 #include <span>
@@ -89,8 +88,8 @@ FrameMetadata MetadataOf(const FrameRecord& record) {
 }
 
 bool IsEmpty(const FrameRecord& record) {
-  const std::array<std::byte, sizeof(FrameRecord)> zeros = {};
-  return std::memcmp(&record, zeros.data(), zeros.size()) == 0;
+  const auto bytes = std::as_bytes(std::span(&record, 1));
+  return std::ranges::all_of(bytes, [](std::byte byte) { return byte == std::byte{0}; });
 }
 
 absl::Status CheckRecord(const FrameRecord& record, uint32_t frame_index,

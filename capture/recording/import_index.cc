@@ -25,7 +25,7 @@ constexpr std::array<std::string_view, 10> kOptional = {"pattern",
                                                         "timestamp_s",
                                                         "photodiode_counts",
                                                         "bits"};
-constexpr double kLatest_s = 9e9;  // in nanoseconds it still fits 64 bits
+constexpr double kLatestS = 9e9;  // in nanoseconds it still fits 64 bits
 
 absl::Status CheckColumns(const CsvTable& table) {
   for (const std::string_view name : kRequired) {
@@ -166,7 +166,7 @@ absl::StatusOr<IndexedFrame> ReadFrame(const CsvTable& table, size_t index,
   EYEBOX_ASSIGN_OR_RETURN(frame.spec, ReadSpec(row));
   EYEBOX_ASSIGN_OR_RETURN(frame.repeat, row.WholeNumber("repeat"));
   EYEBOX_ASSIGN_OR_RETURN(frame.photodiode_counts, row.Known("photodiode_counts", -1e18, 1e18));
-  EYEBOX_ASSIGN_OR_RETURN(const auto timestamp_s, row.Known("timestamp_s", -kLatest_s, kLatest_s));
+  EYEBOX_ASSIGN_OR_RETURN(const auto timestamp_s, row.Known("timestamp_s", -kLatestS, kLatestS));
   if (timestamp_s) frame.device_time_ns = std::llround(*timestamp_s * 1e9);
   if (!row.Text("bits").empty()) {
     EYEBOX_ASSIGN_OR_RETURN(const long bits, row.WholeNumber("bits"));

@@ -16,7 +16,7 @@ namespace {
 
 constexpr size_t kFewestReadings = 3;
 constexpr size_t kFewestForCurve = 5;
-constexpr double kHour_s = 3600;
+constexpr double kHourS = 3600;
 
 // t of 99.73 % by degrees of freedom, from 1 (GUM, table G.2).
 constexpr std::array kStudent = {235.80, 19.21, 9.22, 6.62, 5.51, 4.90, 4.53, 4.28, 4.09, 3.96,
@@ -137,8 +137,8 @@ absl::StatusOr<Drift> FitDrift(std::span<const DriftReading> readings) {
   drift.readings = static_cast<int>(readings.size());
   const Polynomial line = FitPolynomial(readings, axis, 1);
   TakeOver(line, 1, drift);
-  drift.per_hour = drift.linear / axis.half_span_s * kHour_s;
-  drift.per_hour_sigma = std::sqrt(drift.linear_variance) / axis.half_span_s * kHour_s;
+  drift.per_hour = drift.linear / axis.half_span_s * kHourS;
+  drift.per_hour_sigma = std::sqrt(drift.linear_variance) / axis.half_span_s * kHourS;
   if (readings.size() >= kFewestForCurve) {
     const Polynomial curve = FitPolynomial(readings, axis, 2);
     if (curve.borne_out) {

@@ -37,7 +37,7 @@ absl::StatusOr<FlatField> MeasureFlat(std::span<const Stack> exposures,
   const auto per_centre = static_cast<float>(1 / centre.value);
   for (float& value : flat.response.value.pixels()) value *= per_centre;
   for (float& variance : flat.response.variance.pixels()) variance *= per_centre * per_centre;
-  flat.response.unit = "1";
+  flat.response.unit = std::string("1");  // not assigned from a literal: GCC 12 warns falsely
   flat.response.history.push_back(
       absl::StrCat("MeasureFlat(normalised to 1 at the centre, ", centre.value, " DN/s)"));
   return flat;

@@ -35,7 +35,8 @@ void TileVariances::Add(const FrameView& frame, double bias_dn, double saturatio
                         const Image<uint8_t>& defects) {
   const int period = colour_period_px_;
   const int side = kTilePixels * period;
-  const auto [width, height] = frame.size;
+  const int width = frame.size.width_px;
+  const int height = frame.size.height_px;
   const auto usable = [&](size_t i) { return defects.empty() || defects.pixels()[i] == 0; };
   const auto measure = [&](int left, int top) {
     Tile tile;

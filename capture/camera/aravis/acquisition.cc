@@ -96,7 +96,7 @@ absl::Status Acquisition::CheckPresent() const {
 }
 
 // What failed because the camera is gone says so.
-absl::Status Acquisition::Blame(absl::Status failure) const {
+absl::Status Acquisition::Blame(const absl::Status& failure) const {
   const absl::Status present = CheckPresent();
   return present.ok() ? failure : present;
 }

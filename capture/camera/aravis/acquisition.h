@@ -41,7 +41,7 @@ class Acquisition {
   Acquisition(AravisOptions options, std::unique_ptr<Device> device, const Clock* clock);
   absl::Status Describe();
   absl::Status CheckPresent() const;
-  absl::Status Blame(absl::Status failure) const;
+  absl::Status Blame(const absl::Status& failure) const;
   absl::StatusOr<Arrival> WaitForArrival(std::chrono::milliseconds timeout);
   Frame FrameOf(Arrival arrival);
   std::optional<int64_t> TakeTriggerTime(uint64_t frame_id);

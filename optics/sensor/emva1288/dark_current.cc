@@ -62,7 +62,7 @@ struct ThermalFit {
   Quantity rate_slope_dn_s_K;
 };
 
-std::optional<ThermalFit> FitThermal(Darks darks, double mean_degC) {
+std::optional<ThermalFit> FitThermal(Darks darks, double mean_deg_c) {
   const auto count = static_cast<Eigen::Index>(darks.size());
   if (count < 4) return std::nullopt;
   Eigen::MatrixXd design(count, 3);
@@ -70,7 +70,7 @@ std::optional<ThermalFit> FitThermal(Darks darks, double mean_degC) {
   for (Eigen::Index i = 0; i < count; ++i) {
     const SetStatistics& dark = *darks[i];
     const double t = dark.condition.exposure_s;
-    design.row(i) << 1, t, t * (*dark.condition.temperature_degC - mean_degC);
+    design.row(i) << 1, t, t * (*dark.condition.temperature_degC - mean_deg_c);
     mean_dn[i] = dark.mean_dn;
   }
   const Eigen::VectorXd scale = design.colwise().norm();

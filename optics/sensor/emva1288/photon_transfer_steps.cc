@@ -13,7 +13,8 @@ namespace {
 constexpr size_t kFewestSteps = 3;
 
 // Pairs make the temporal series, stacks the spatial one; either serves as both if alone.
-void Split(std::vector<const SetStatistics*> all, std::vector<const SetStatistics*>& temporal,
+void Split(const std::vector<const SetStatistics*>& all,
+           std::vector<const SetStatistics*>& temporal,
            std::vector<const SetStatistics*>& spatial) {
   for (const SetStatistics* set : all) (set->images == 2 ? temporal : spatial).push_back(set);
   if (temporal.empty()) temporal = spatial;

@@ -93,7 +93,10 @@ TEST_F(ReplayPhotodiode, AMissingFolderIsNamed) {
 TEST_F(ReplayPhotodiode, ARecordingWithoutSamplesIsMissingThem) {
   RecordingHeader header;
   header.rig = {.name = "test", .camera_uri = "sim:test"};
-  ASSERT_TRUE(RecordingWriter::Create(folder_, header, &clock_).ok());
+  header.camera.sensor_size = {.width_px = 4, .height_px = 3};
+  header.camera.significant_bits = 12;
+  const absl::Status created = RecordingWriter::Create(folder_, header, &clock_).status();
+  ASSERT_TRUE(created.ok()) << created;
   const auto photodiode = OpenPhotodiode({.uri = "replay:" + folder_.string()}, &clock_);
   EXPECT_TRUE(absl::IsNotFound(photodiode.status())) << photodiode.status();
   EXPECT_THAT(std::string(photodiode.status().message()), HasSubstr("without samples"));

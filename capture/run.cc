@@ -1,5 +1,6 @@
 #include "capture/run.h"
 
+#include <cmath>
 #include <utility>
 
 #include "capture/base/status.h"
@@ -47,6 +48,7 @@ class PlanRunner {
     CaptureFigures figures;
     figures.reading = {.number = writer_.PublishedCount() + 1, .spec = spec, .mean = {}};
     EYEBOX_ASSIGN_OR_RETURN(TakenCapture taken, TakePlausible(spec, figures));
+    NoteSamples(taken, figures);
     EYEBOX_RETURN_IF_ERROR(taken.writer->Publish());
     taken.writer.reset();  // closes the capture: only then may the manifest say more of it
     ++report_.captures;
@@ -72,6 +74,24 @@ class PlanRunner {
       ++report_.captures_taken_again;
       ++figures.attempts;
     }
+  }
+
+  void NoteSamples(const TakenCapture& taken, CaptureFigures& figures) {
+    if (!rig_.photodiode) return;
+    const int64_t lost = taken.writer->samples_lost();
+    report_.samples += taken.samples - lost;
+    std::string remark;
+    if (lost > 0) {
+      remark = std::to_string(lost) + " of " + std::to_string(taken.samples) +
+               " samples of the photodiode found no room in the file";
+    } else if (taken.samples == 0) {
+      remark = "the photodiode gave no sample";
+    }
+    AddRemark(remark, figures);
+  }
+
+  static void AddRemark(const std::string& text, CaptureFigures& figures) {
+    if (!text.empty()) figures.remark += (figures.remark.empty() ? "" : "; ") + text;
   }
 
   std::string DoubtOf(const CaptureSpec& spec, const FrameMean& mean) const {
@@ -122,12 +142,10 @@ class PlanRunner {
     const CaptureSpec& spec = figures.reading.spec;
     const std::string dimmed = log_.Dimmed(spec, figures.reading.mean);
     const std::string earlier = log_.EarlierTooBright(spec, figures.reading.mean);
-    const auto remark = [&figures](const std::string& text) {
-      if (!text.empty()) figures.remark += (figures.remark.empty() ? "" : "; ") + text;
-    };
-    remark(earlier);
+    AddRemark(earlier, figures);
     if (figures.settling && !figures.settling->settled) {
-      remark("it had not settled after " + std::to_string(figures.settling->seconds) + " s");
+      AddRemark("it had not settled after " + std::to_string(figures.settling->seconds) + " s",
+                figures);
     }
     const std::string capture = "capture " + std::to_string(figures.reading.number);
     if (!figures.remark.empty()) report_.remarks.push_back(capture + ": " + figures.remark);
@@ -178,6 +196,11 @@ absl::Status RunOptions::Validate() const {
   }
   if (settle) EYEBOX_RETURN_IF_ERROR(settle->Validate());
   EYEBOX_RETURN_IF_ERROR(plausibility.Validate());
+  if (!std::isfinite(photodiode_rate_hz) || photodiode_rate_hz <= 0) {
+    return BadInput("RunOptions.photodiode_rate_hz", "is " + std::to_string(photodiode_rate_hz),
+                    "give a positive rate");
+  }
+  if (clock == nullptr) return BadInput("RunOptions.clock", "is missing", "give the rig's clock");
   if (exposure_tolerance >= 0 && exposure_tolerance < 1) return absl::OkStatus();
   return BadInput("RunOptions.exposure_tolerance", "is " + std::to_string(exposure_tolerance),
                   "give a fraction from 0 up to 1");
@@ -203,8 +226,10 @@ absl::StatusOr<RunReport> RunPlan(Rig& rig, const CapturePlan& plan, RecordingWr
   const absl::Status run = RunCaptures(runner, plan, options);
   // A camera that was lost and could not be opened again is not there any more.
   const absl::Status stop = rig.camera ? rig.camera->Stop() : absl::OkStatus();
+  const absl::Status photodiode = rig.photodiode ? rig.photodiode->Stop() : absl::OkStatus();
   if (!run.ok()) return run;
   if (!stop.ok()) return stop;
+  if (!photodiode.ok()) return photodiode;
   return std::move(runner).report();
 }
 

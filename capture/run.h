@@ -57,6 +57,9 @@ struct RunOptions {
   // Opens a camera that was lost anew, once in a run; the old one is gone by then. Not set: a lost
   // camera ends the run.
   std::function<absl::StatusOr<std::unique_ptr<Camera>>()> reopen = nullptr;
+  // Of the rig's photodiode, if it has one; the nearest that it can do.
+  double photodiode_rate_hz = 1000;
+  const Clock* clock = SystemClock();  // of the clock triples; that of the rig
 
   // Errors: InvalidArgument (names the field).
   absl::Status Validate() const;
@@ -65,6 +68,7 @@ struct RunOptions {
 struct RunReport {
   int captures = 0;
   int64_t frames = 0;            // on disk
+  int64_t samples = 0;           // of the photodiode, on disk
   int captures_taken_again = 0;  // attempts that were thrown away
   int implausible = 0;           // of these, those that read implausibly
   int cameras_reopened = 0;
@@ -83,6 +87,10 @@ RecordingHeader MakeHeader(const Rig& rig, const CapturePlan& plan, const Clock&
 // is kept with a remark. A reference patch that lost much of its light at once tells that the
 // headset slept or dimmed: it and all since the reference before are marked suspect in the
 // recording, and the run ends.
+//
+// A photodiode runs from before the first trigger of a capture to its last frame. Its samples and
+// two clock triples, one at each end, stand with the frames; samples that find no room are told in
+// a remark. If it fails, the capture is taken again, as it is for a lost frame.
 //
 // To resume a recording, give what RemainingCaptures() names as the plan, a resumed writer and the
 // earlier readings.

@@ -19,6 +19,7 @@ struct ClockTriple {
   int64_t real_ns = 0;
   std::optional<int64_t> device_ns;  // empty for a device without a clock of its own
   int64_t window_ns = 0;
+  friend bool operator==(const ClockTriple&, const ClockTriple&) = default;
 };
 
 // Reads the device's own clock, in ns of that clock.

@@ -25,9 +25,7 @@ struct Scheme {
 constexpr std::array kSchemes = {Scheme{"sim", OpenSim}, Scheme{"replay", OpenReplayRig},
                                  Scheme{"aravis", OpenAravisRig}, Scheme{"v4l2", OpenV4l2Rig}};
 
-}  // namespace
-
-absl::StatusOr<Rig> OpenRig(const RigConfig& config, const Clock* clock) {
+absl::StatusOr<Rig> OpenCamera(const RigConfig& config, const Clock* clock) {
   const std::string_view uri = config.camera_uri;
   for (const Scheme& scheme : kSchemes) {
     if (uri.starts_with(scheme.name) && uri.substr(scheme.name.size()).starts_with(':')) {
@@ -38,6 +36,17 @@ absl::StatusOr<Rig> OpenRig(const RigConfig& config, const Clock* clock) {
   for (const Scheme& scheme : kSchemes) known.append(" ").append(scheme.name).append(":");
   return BadInput("camera_uri '" + config.camera_uri + "'", "has no scheme that is known here",
                   "start it with one of" + known);
+}
+
+}  // namespace
+
+absl::StatusOr<Rig> OpenRig(const RigConfig& config, const Clock* clock) {
+  EYEBOX_ASSIGN_OR_RETURN(Rig rig, OpenCamera(config, clock));
+  if (!config.photodiode_uri.empty()) {
+    EYEBOX_ASSIGN_OR_RETURN(
+        rig.photodiode, OpenPhotodiode({.uri = config.photodiode_uri, .seed = config.seed}, clock));
+  }
+  return rig;
 }
 
 std::vector<std::string> CameraSchemes() {

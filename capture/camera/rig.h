@@ -11,6 +11,7 @@
 #include "capture/base/capture_spec.h"
 #include "capture/base/clock.h"
 #include "capture/camera/camera.h"
+#include "capture/photodiode/photodiode.h"
 
 namespace eyebox::capture {
 
@@ -44,9 +45,10 @@ struct Rig {
   RecordingOrigin origin = RecordingOrigin::kCaptured;  // a replay passes on what it replays
   std::unique_ptr<Camera> camera;
   std::unique_ptr<StimulusPresenter> presenter;
+  std::unique_ptr<Photodiode> photodiode = nullptr;  // null where config names none
 };
 
-// Opens what the URI names. `clock` must outlive the rig.
+// Opens what the URIs of camera and photodiode name. `clock` must outlive the rig.
 // Errors: InvalidArgument (unknown scheme: lists the known ones), NotFound, Unavailable.
 absl::StatusOr<Rig> OpenRig(const RigConfig& config, const Clock* clock);
 

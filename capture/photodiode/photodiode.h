@@ -12,6 +12,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "capture/base/clock.h"
+#include "capture/base/sample_block.h"
 
 namespace eyebox::capture {
 
@@ -30,22 +31,6 @@ struct PhotodiodeSettings {
   double sample_rate_hz = 1000;  // of the converter's own timer; not looked at if pulse_started
   bool pulse_started = false;
   friend bool operator==(const PhotodiodeSettings&, const PhotodiodeSettings&) = default;
-};
-
-struct PhotodiodeSample {
-  int64_t monotonic_ns = 0;  // CLOCK_MONOTONIC at which the conversion began
-  int32_t counts = 0;
-  friend bool operator==(const PhotodiodeSample&, const PhotodiodeSample&) = default;
-};
-
-// Consecutive conversions: whatever was lost, was lost before the first of them.
-struct SampleBlock {
-  uint64_t sequence = 0;     // of the first sample; conversions are counted from 0 at Start()
-  uint64_t lost_before = 0;  // conversions between the previous block and this one
-  std::vector<PhotodiodeSample> samples = {};  // never empty, times ascending
-  int64_t time_uncertainty_ns = 0;  // bound of the error of monotonic_ns common to the block
-  // The converter's own clock, one for each sample; empty where it has none.
-  std::vector<int64_t> device_time_ns = {};
 };
 
 // Not thread-safe: one thread at a time.

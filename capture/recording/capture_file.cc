@@ -2,16 +2,13 @@
 
 #include <hdf5.h>
 
-#include <algorithm>
-#include <array>
-#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <system_error>
 
 #include "capture/base/status.h"
-#include "capture/recording/frame_record.h"
 #include "capture/recording/hdf5_handle.h"
+#include "capture/recording/row_types.h"
 
 namespace eyebox::capture {
 namespace {
@@ -29,44 +26,6 @@ absl::Status Refused(const std::filesystem::path& file, const std::string& what)
 #define EYEBOX_HDF5(call, what) \
   if ((call) < 0) return Refused(file_, what)
 
-struct RecordField {
-  const char* name;
-  size_t offset;
-  hid_t type;
-};
-
-#define EYEBOX_FIELD(name, type) \
-  RecordField { #name, offsetof(FrameRecord, name), type }
-
-Hdf5Handle RecordType() {
-  const std::array fields = {
-      EYEBOX_FIELD(camera_frame_id, H5T_STD_U64LE),
-      EYEBOX_FIELD(device_time_ns, H5T_STD_I64LE),
-      EYEBOX_FIELD(monotonic_time_ns, H5T_STD_I64LE),
-      EYEBOX_FIELD(trigger_time_ns, H5T_STD_I64LE),
-      EYEBOX_FIELD(exposure_asked_s, H5T_IEEE_F64LE),
-      EYEBOX_FIELD(exposure_reported_s, H5T_IEEE_F64LE),
-      EYEBOX_FIELD(gain_asked_db, H5T_IEEE_F64LE),
-      EYEBOX_FIELD(gain_reported_db, H5T_IEEE_F64LE),
-      EYEBOX_FIELD(black_level_dn, H5T_IEEE_F64LE),
-      EYEBOX_FIELD(temperature_degC, H5T_IEEE_F64LE),
-      EYEBOX_FIELD(photodiode_counts, H5T_IEEE_F64LE),
-      EYEBOX_FIELD(frame_xxh3, H5T_STD_U64LE),
-      EYEBOX_FIELD(frame_index, H5T_STD_U32LE),
-      EYEBOX_FIELD(missing_packets, H5T_STD_U32LE),
-      EYEBOX_FIELD(level_id, H5T_STD_I32LE),
-      EYEBOX_FIELD(valid, H5T_STD_U16LE),
-      EYEBOX_FIELD(state, H5T_STD_U8LE),
-      EYEBOX_FIELD(buffer_status, H5T_STD_U8LE),
-      EYEBOX_FIELD(record_xxh3, H5T_STD_U64LE),
-  };
-  Hdf5Handle type(H5Tcreate(H5T_COMPOUND, sizeof(FrameRecord)), H5Tclose);
-  for (const RecordField& field : fields) {
-    H5Tinsert(type.id(), field.name, field.offset, field.type);
-  }
-  return type;
-}
-
 using Dimensions = std::vector<hsize_t>;
 
 Dimensions FramesDimensions(const CaptureFileShape& shape) {
@@ -82,12 +41,27 @@ class FileBuilder {
 
   absl::Status AddRecords() {
     EYEBOX_RETURN_IF_ERROR(Opened());
-    const Hdf5Handle type = RecordType();
-    EYEBOX_ASSIGN_OR_RETURN(Hdf5Handle records,
-                            Dataset("/frame_records", type.id(),
-                                    {static_cast<hsize_t>(shape_.frame_count)}, Contiguous()));
-    EYEBOX_RETURN_IF_ERROR(Offset(records, layout_.records_offset_bytes));
-    return Closed(records, "/frame_records");
+    return AddRows("/frame_records", FrameRecordType(), static_cast<hsize_t>(shape_.frame_count),
+                   layout_.records_offset_bytes);
+  }
+
+  // What there is room for; nothing where a capture has none.
+  absl::Status AddSideRows() {
+    layout_.side = shape_.side;
+    SideRows& side = layout_.side;
+    if (side.sample_capacity > 0) {
+      Hdf5Handle group(H5Gcreate2(Id(), "/photodiode", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                       H5Gclose);
+      EYEBOX_HDF5(group.id(), "cannot create /photodiode");
+      EYEBOX_RETURN_IF_ERROR(Closed(group, "/photodiode"));
+      EYEBOX_RETURN_IF_ERROR(AddRows("/photodiode/samples", SampleRowType(), side.sample_capacity,
+                                     side.samples_offset_bytes));
+      EYEBOX_RETURN_IF_ERROR(AddRows("/photodiode/groups", SampleGroupType(), side.group_capacity,
+                                     side.groups_offset_bytes));
+    }
+    if (side.triple_capacity == 0) return absl::OkStatus();
+    return AddRows("/clock_triples", TripleRowType(), side.triple_capacity,
+                   side.triples_offset_bytes);
   }
 
   absl::Status AddContiguousFrames() {
@@ -171,6 +145,13 @@ class FileBuilder {
     return creation;
   }
 
+  absl::Status AddRows(const char* name, const Hdf5Handle& type, hsize_t rows,
+                       uint64_t& offset_bytes) {
+    EYEBOX_ASSIGN_OR_RETURN(Hdf5Handle dataset, Dataset(name, type.id(), {rows}, Contiguous()));
+    EYEBOX_RETURN_IF_ERROR(Offset(dataset, offset_bytes));
+    return Closed(dataset, name);
+  }
+
   absl::StatusOr<Hdf5Handle> Dataset(const char* name, hid_t type, const Dimensions& dimensions,
                                      const Hdf5Handle& creation) {
     const Hdf5Handle space(
@@ -232,6 +213,7 @@ class LockedPackedFile final : public PackedFileWriter {
   absl::Status Begin(const MetaStrings& meta) {
     EYEBOX_RETURN_IF_ERROR(builder_->AddRecords());
     EYEBOX_RETURN_IF_ERROR(builder_->AddMeta(meta));
+    EYEBOX_RETURN_IF_ERROR(builder_->AddSideRows());
     return builder_->AddPackedFrames();
   }
 
@@ -258,6 +240,7 @@ absl::StatusOr<CaptureFileLayout> CreateCaptureFile(const std::filesystem::path&
   FileBuilder builder(file, shape);
   EYEBOX_RETURN_IF_ERROR(builder.AddRecords());
   EYEBOX_RETURN_IF_ERROR(builder.AddMeta(meta));
+  EYEBOX_RETURN_IF_ERROR(builder.AddSideRows());
   EYEBOX_RETURN_IF_ERROR(builder.AddContiguousFrames());
   return builder.Finish();
 }

@@ -14,12 +14,14 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "capture/base/image.h"
+#include "capture/recording/side_rows.h"
 
 namespace eyebox::capture {
 
 struct CaptureFileShape {
   ImageSize frame_size;
   int frame_count = 0;
+  SideRows side = {};  // its capacities
 };
 
 // Scalar strings, written as /meta/NAME.
@@ -29,16 +31,18 @@ struct CaptureFileLayout {
   uint64_t file_bytes = 0;
   uint64_t frames_offset_bytes = 0;  // 0 in a packed file
   uint64_t records_offset_bytes = 0;
+  SideRows side = {};  // with its offsets
 };
 
-// /frames uint16 [N, height, width] and /frame_records [N], contiguous, allocated, not filled: the
-// caller writes both at their offsets. Errors: Internal (libhdf5 refused, with its reason).
+// /frames uint16 [N, height, width], /frame_records [N] and the side rows, contiguous, allocated,
+// not filled: the caller writes all of them at their offsets. Errors: Internal (libhdf5 refused,
+// with its reason).
 absl::StatusOr<CaptureFileLayout> CreateCaptureFile(const std::filesystem::path& file,
                                                     const CaptureFileShape& shape,
                                                     const MetaStrings& meta);
 
 // The same with /frames in one chunk a frame, shuffled and deflated; libhdf5 keeps the file open
-// until Finish(). The records are the caller's to write afterwards.
+// until Finish(). Records and side rows are the caller's to write afterwards.
 class PackedFileWriter {
  public:
   virtual ~PackedFileWriter() = default;

@@ -32,8 +32,7 @@ absl::Status AddRange(const UnixFile& file, uint64_t begin, uint64_t end, XXH3_s
 
 uint64_t Checksum(const void* data, size_t size) { return XXH3_64bits(data, size); }
 
-absl::StatusOr<uint64_t> ChecksumOutside(const UnixFile& file,
-                                         std::initializer_list<ByteRange> skipped) {
+absl::StatusOr<uint64_t> ChecksumOutside(const UnixFile& file, std::span<const ByteRange> skipped) {
   EYEBOX_ASSIGN_OR_RETURN(const uint64_t end, file.Size());
   const std::unique_ptr<XXH3_state_t, StateFree> state(XXH3_createState());
   XXH3_64bits_reset(state.get());

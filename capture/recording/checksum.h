@@ -4,7 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <initializer_list>
+#include <span>
 #include <string_view>
 
 #include "absl/status/statusor.h"
@@ -22,8 +22,7 @@ struct ByteRange {
 
 // Of all bytes of `file` except those in `skipped`, which stand in order; read a MiB at a time.
 // Errors: the errno of the disk.
-absl::StatusOr<uint64_t> ChecksumOutside(const UnixFile& file,
-                                         std::initializer_list<ByteRange> skipped);
+absl::StatusOr<uint64_t> ChecksumOutside(const UnixFile& file, std::span<const ByteRange> skipped);
 
 }  // namespace eyebox::capture
 

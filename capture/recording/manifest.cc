@@ -1,5 +1,6 @@
 #include "capture/recording/manifest.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstring>
@@ -41,6 +42,31 @@ absl::Status Damaged(const std::string& where, std::string_view what) {
                  "restore manifest.log from a copy; after a crash, eyebox recover mends its end");
 }
 
+v1::SideRows ToProto(const SideRows& side) {
+  v1::SideRows proto;
+  proto.set_sample_capacity(static_cast<int64_t>(side.sample_capacity));
+  proto.set_sample_count(static_cast<int64_t>(side.sample_count));
+  proto.set_samples_lost(static_cast<int64_t>(side.samples_lost));
+  proto.set_group_capacity(static_cast<int64_t>(side.group_capacity));
+  proto.set_triple_capacity(static_cast<int64_t>(side.triple_capacity));
+  proto.set_samples_offset_bytes(side.samples_offset_bytes);
+  proto.set_groups_offset_bytes(side.groups_offset_bytes);
+  proto.set_triples_offset_bytes(side.triples_offset_bytes);
+  return proto;
+}
+
+// A negative count becomes one that cannot be.
+SideRows FromProto(const v1::SideRows& proto) {
+  return {.sample_capacity = static_cast<uint64_t>(proto.sample_capacity()),
+          .sample_count = static_cast<uint64_t>(proto.sample_count()),
+          .samples_lost = static_cast<uint64_t>(proto.samples_lost()),
+          .group_capacity = static_cast<uint64_t>(proto.group_capacity()),
+          .triple_capacity = static_cast<uint64_t>(proto.triple_capacity()),
+          .samples_offset_bytes = proto.samples_offset_bytes(),
+          .groups_offset_bytes = proto.groups_offset_bytes(),
+          .triples_offset_bytes = proto.triples_offset_bytes()};
+}
+
 v1::ManifestCapture ToProto(const ManifestEntry& entry) {
   v1::ManifestCapture proto;
   proto.set_number(entry.number);
@@ -54,6 +80,7 @@ v1::ManifestCapture ToProto(const ManifestEntry& entry) {
   proto.set_records_offset_bytes(entry.records_offset_bytes);
   proto.set_digest_xxh3(entry.digest_xxh3);
   if (entry.row_count != entry.frame_count) proto.set_row_count(entry.row_count);
+  if (!entry.side.Empty()) *proto.mutable_side() = ToProto(entry.side);
   return proto;
 }
 
@@ -62,7 +89,8 @@ bool SizesCanBe(const ManifestEntry& entry) {
   return entry.frame_size.width_px > 0 && entry.frame_size.height_px > 0 && entry.frame_count > 0 &&
          entry.row_count >= entry.frame_count &&
          entry.frames_offset_bytes + entry.FramesBytes() <= entry.file_bytes &&
-         entry.records_offset_bytes + records_bytes <= entry.file_bytes;
+         entry.records_offset_bytes + records_bytes <= entry.file_bytes &&
+         entry.side.CanBe(entry.file_bytes);
 }
 
 absl::StatusOr<ManifestEntry> FromProto(const v1::ManifestCapture& proto,
@@ -77,6 +105,7 @@ absl::StatusOr<ManifestEntry> FromProto(const v1::ManifestCapture& proto,
   entry.frames_offset_bytes = proto.frames_offset_bytes();
   entry.records_offset_bytes = proto.records_offset_bytes();
   entry.digest_xxh3 = proto.digest_xxh3();
+  entry.side = FromProto(proto.side());
   entry.row_count = proto.row_count() == 0 ? entry.frame_count : proto.row_count();
   if (!SizesCanBe(entry)) return Damaged(where, "states sizes that cannot be");
   return entry;
@@ -166,15 +195,19 @@ uint64_t ManifestEntry::RecordOffset(uint64_t row) const {
 }
 
 absl::StatusOr<uint64_t> DigestOf(const UnixFile& file, const ManifestEntry& entry) {
-  return ChecksumOutside(file, {{entry.frames_offset_bytes, entry.FramesBytes()}});
+  const ByteRange frames = {entry.frames_offset_bytes, entry.FramesBytes()};
+  return ChecksumOutside(file, {&frames, 1});
 }
 
 absl::StatusOr<uint64_t> StructureOf(const UnixFile& file, const ManifestEntry& entry) {
-  const ByteRange frames = {entry.frames_offset_bytes, entry.FramesBytes()};
-  const ByteRange records = {entry.records_offset_bytes,
-                             static_cast<uint64_t>(entry.row_count) * sizeof(FrameRecord)};
-  if (records.offset < frames.offset) return ChecksumOutside(file, {records, frames});
-  return ChecksumOutside(file, {frames, records});
+  std::vector<ByteRange> written = {
+      {entry.frames_offset_bytes, entry.FramesBytes()},
+      {entry.records_offset_bytes, static_cast<uint64_t>(entry.row_count) * sizeof(FrameRecord)}};
+  for (const ByteRange& rows : {entry.side.Samples(), entry.side.Groups(), entry.side.Triples()}) {
+    if (rows.size > 0) written.push_back(rows);
+  }
+  std::ranges::sort(written, {}, &ByteRange::offset);
+  return ChecksumOutside(file, written);
 }
 
 absl::StatusOr<ManifestLog> ManifestLog::Create(const std::filesystem::path& file,

@@ -14,6 +14,7 @@
 #include "capture/base/capture_spec.h"
 #include "capture/base/image.h"
 #include "capture/base/unix_file.h"
+#include "capture/recording/side_rows.h"
 
 namespace eyebox::capture {
 
@@ -28,6 +29,7 @@ struct ManifestEntry {
   uint64_t file_bytes = 0;
   uint64_t frames_offset_bytes = 0;  // 0 in a packed file
   uint64_t records_offset_bytes = 0;
+  SideRows side = {};
   uint64_t digest_xxh3 = 0;  // of the file without /frames; of a packed file, of the whole
 
   uint64_t FrameBytes() const { return frame_size.PixelCount() * sizeof(uint16_t); }
@@ -49,7 +51,7 @@ struct SuspectCaptures {
 // A capture file that was about to take its first frame.
 struct BegunCapture {
   ManifestEntry entry;          // frame_count is row_count, digest_xxh3 0
-  uint64_t structure_xxh3 = 0;  // of the file without /frames and /frame_records
+  uint64_t structure_xxh3 = 0;  // of the file without /frames, /frame_records and side rows
 };
 
 struct Manifest {

@@ -13,16 +13,25 @@
 #include "capture/recording/layout.h"
 #include "capture/recording/manifest.h"
 #include "capture/recording/reader.h"
+#include "capture/recording/side_file.h"
 #include "capture/recording/staging.h"
 
 namespace eyebox::capture {
 namespace {
 
+// Samples and triples are few: their bytes are copied as they are, with their room.
+absl::Status CopySide(const CaptureEntry& capture, const SideRows& from_rows, UnixFile& to,
+                      const SideRows& to_rows) {
+  if (from_rows.Empty()) return absl::OkStatus();
+  EYEBOX_ASSIGN_OR_RETURN(const UnixFile from, UnixFile::OpenToRead(capture.file));
+  return CopySideRows(from, from_rows, to, to_rows);
+}
+
 absl::StatusOr<ManifestEntry> PackCapture(RecordingReader& reader, const CaptureEntry& capture,
-                                          const std::filesystem::path& file) {
+                                          const SideRows& side, const std::filesystem::path& file) {
   EYEBOX_ASSIGN_OR_RETURN(
       const auto writer,
-      PackedFileWriter::Create(file, {capture.frame_size, capture.frame_count},
+      PackedFileWriter::Create(file, {capture.frame_size, capture.frame_count, side},
                                CaptureMeta(reader.Header().camera, capture.spec)));
   std::vector<FrameRecord> records;
   EYEBOX_RETURN_IF_ERROR(reader.VisitFrames(capture, [&](const Frame& frame) {
@@ -34,6 +43,7 @@ absl::StatusOr<ManifestEntry> PackCapture(RecordingReader& reader, const Capture
   EYEBOX_ASSIGN_OR_RETURN(UnixFile written, UnixFile::OpenToWrite(file));
   EYEBOX_RETURN_IF_ERROR(written.WriteAt(layout.records_offset_bytes, records.data(),
                                          records.size() * sizeof(FrameRecord)));
+  EYEBOX_RETURN_IF_ERROR(CopySide(capture, side, written, layout.side));
   EYEBOX_RETURN_IF_ERROR(written.Sync());
   ManifestEntry entry;
   entry.number = capture.number;
@@ -44,6 +54,7 @@ absl::StatusOr<ManifestEntry> PackCapture(RecordingReader& reader, const Capture
   entry.packed = true;
   entry.file_bytes = layout.file_bytes;
   entry.records_offset_bytes = layout.records_offset_bytes;
+  entry.side = layout.side;
   EYEBOX_ASSIGN_OR_RETURN(entry.digest_xxh3, DigestOf(written, entry));
   return entry;
 }
@@ -68,13 +79,15 @@ absl::StatusOr<PackReport> PackRecording(const std::filesystem::path& recording,
                                          const std::filesystem::path& packed,
                                          const PackProgress& progress) {
   EYEBOX_ASSIGN_OR_RETURN(const auto reader, RecordingReader::Open(recording));
+  EYEBOX_ASSIGN_OR_RETURN(const Manifest source, ReadManifest(ManifestPath(recording)));
   EYEBOX_ASSIGN_OR_RETURN(StagedFolder staged, StagedFolder::Begin(packed));
   EYEBOX_RETURN_IF_ERROR(CreateFolders(CapturesFolder(staged.path())));
   EYEBOX_ASSIGN_OR_RETURN(ManifestLog manifest, CopyHeader(recording, staged.path()));
   PackReport report;
   for (const CaptureEntry& capture : reader->Captures()) {
     const std::filesystem::path file = CapturePath(staged.path(), capture.number);
-    EYEBOX_ASSIGN_OR_RETURN(const ManifestEntry entry, PackCapture(*reader, capture, file));
+    const SideRows& side = source.entries.at(static_cast<size_t>(capture.number) - 1).side;
+    EYEBOX_ASSIGN_OR_RETURN(const ManifestEntry entry, PackCapture(*reader, capture, side, file));
     EYEBOX_RETURN_IF_ERROR(manifest.Append(entry));
     if (!capture.suspect.empty()) {
       EYEBOX_RETURN_IF_ERROR(manifest.Append(

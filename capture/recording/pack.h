@@ -21,10 +21,10 @@ struct PackReport {
 using PackProgress = std::function<void(int captures_done, int captures_total)>;
 
 // Copies `recording` to `packed` with every frame a chunk of its own, shuffled and deflated;
-// header, frames and records are the same bit for bit; rows without a frame are left out, and those
-// behind them count on. Every frame is verified while it is read and
-// again after it was written. `packed` appears whole or not at all; results/ is not copied. Errors:
-// those of RecordingReader; AlreadyExists, Internal (libhdf5), the errno of the disk.
+// header, frames, records, samples and clock triples are the same bit for bit; rows without a frame
+// are left out, and those behind them count on. Every frame is verified while it is read and again
+// after it was written. `packed` appears whole or not at all; results/ is not copied. Errors: those
+// of RecordingReader; AlreadyExists, Internal (libhdf5), the errno of the disk.
 absl::StatusOr<PackReport> PackRecording(const std::filesystem::path& recording,
                                          const std::filesystem::path& packed,
                                          const PackProgress& progress = nullptr);

@@ -11,6 +11,7 @@
 #include "capture/recording/header_file.h"
 #include "capture/recording/layout.h"
 #include "capture/recording/manifest.h"
+#include "capture/recording/side_file.h"
 
 namespace eyebox::capture {
 namespace {
@@ -48,7 +49,9 @@ class FileReader final : public RecordingReader {
                            .frame_count = entry.frame_count,
                            .packed = entry.packed,
                            .file = CapturePath(recording, entry.number),
-                           .suspect = entry.suspect});
+                           .suspect = entry.suspect,
+                           .sample_count = static_cast<int64_t>(entry.side.sample_count),
+                           .samples_lost = static_cast<int64_t>(entry.side.samples_lost)});
     }
   }
 
@@ -56,9 +59,8 @@ class FileReader final : public RecordingReader {
   std::span<const CaptureEntry> Captures() const override { return captures_; }
 
   absl::Status VisitFrames(const CaptureEntry& capture, const FrameVisitor& visit) override {
-    const ManifestEntry& entry = manifest_.entries.at(static_cast<size_t>(capture.number) - 1);
-    EYEBOX_ASSIGN_OR_RETURN(const UnixFile file, OpenCapture(capture.file));
-    EYEBOX_RETURN_IF_ERROR(CheckDigest(file, entry));
+    const ManifestEntry& entry = EntryOf(capture);
+    EYEBOX_ASSIGN_OR_RETURN(const UnixFile file, OpenVerified(capture));
     std::unique_ptr<PackedFrames> packed;
     if (entry.packed) {
       EYEBOX_ASSIGN_OR_RETURN(
@@ -82,7 +84,31 @@ class FileReader final : public RecordingReader {
                    kRestore);
   }
 
+  absl::Status VisitSamples(const CaptureEntry& capture, const SampleVisitor& visit) override {
+    const SideRows& rows = EntryOf(capture).side;
+    if (rows.sample_capacity == 0) return absl::OkStatus();
+    EYEBOX_ASSIGN_OR_RETURN(const UnixFile file, OpenVerified(capture));
+    return VisitSideSamples(file, rows, visit);
+  }
+
+  absl::StatusOr<std::vector<ClockTriple>> ClockTriples(const CaptureEntry& capture) override {
+    const SideRows& rows = EntryOf(capture).side;
+    if (rows.triple_capacity == 0) return std::vector<ClockTriple>();
+    EYEBOX_ASSIGN_OR_RETURN(const UnixFile file, OpenVerified(capture));
+    return ReadTriples(file, rows);
+  }
+
  private:
+  const ManifestEntry& EntryOf(const CaptureEntry& capture) const {
+    return manifest_.entries.at(static_cast<size_t>(capture.number) - 1);
+  }
+
+  absl::StatusOr<UnixFile> OpenVerified(const CaptureEntry& capture) const {
+    EYEBOX_ASSIGN_OR_RETURN(UnixFile file, OpenCapture(capture.file));
+    EYEBOX_RETURN_IF_ERROR(CheckDigest(file, EntryOf(capture)));
+    return file;
+  }
+
   static absl::StatusOr<FrameRecord> ReadRecord(const UnixFile& file, const ManifestEntry& entry,
                                                 uint32_t row) {
     FrameRecord record;

@@ -2,15 +2,19 @@
 #ifndef EYEBOX_CAPTURE_RECORDING_READER_H_
 #define EYEBOX_CAPTURE_RECORDING_READER_H_
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "capture/base/clock_triple.h"
 #include "capture/base/frame.h"
+#include "capture/base/sample_block.h"
 #include "capture/recording/header.h"
 
 namespace eyebox::capture {
@@ -25,6 +29,8 @@ struct CaptureEntry {
   std::filesystem::path file;
   // Why it must not be used (the headset slept meanwhile); empty where it may.
   std::string suspect = {};
+  int64_t sample_count = 0;  // of the photodiode
+  int64_t samples_lost = 0;  // samples that came and found no room
 };
 
 // Sees the captures that were published when it was opened, also while more are recorded.
@@ -46,6 +52,14 @@ class RecordingReader {
   // before it is shown. One buffer is reused: the pixels are valid during the call only.
   // Stops at the first error, the visitor's or DataLoss (file and frame named).
   virtual absl::Status VisitFrames(const CaptureEntry& capture, const FrameVisitor& visit) = 0;
+
+  using SampleVisitor = std::function<absl::Status(const SampleBlock&)>;
+  // The same for the photodiode's samples: blocks as they were appended (one that found room in
+  // part is shorter). sequence counts from the start of the photodiode, which is that of the
+  // capture. Nothing is shown where there was no photodiode.
+  virtual absl::Status VisitSamples(const CaptureEntry& capture, const SampleVisitor& visit) = 0;
+  // In the order in which they were taken; empty where there are none. Errors: DataLoss.
+  virtual absl::StatusOr<std::vector<ClockTriple>> ClockTriples(const CaptureEntry& capture) = 0;
 };
 
 // Reads every byte of every capture and compares it with its checksums.
@@ -53,6 +67,7 @@ class RecordingReader {
 struct VerifyReport {
   int captures = 0;
   int64_t frames = 0;
+  int64_t samples = 0;  // of photodiodes
   int64_t bytes = 0;
 };
 absl::StatusOr<VerifyReport> VerifyRecording(const std::filesystem::path& recording);

@@ -12,6 +12,7 @@
 #include "capture/recording/layout.h"
 #include "capture/recording/manifest.h"
 #include "capture/recording/recover_rows.h"
+#include "capture/recording/side_file.h"
 
 namespace eyebox::capture {
 namespace {
@@ -111,6 +112,13 @@ class Recovery {
           CapturePath(recording_, entry.number).stem().string() + ".frame_records", records));
       EYEBOX_RETURN_IF_ERROR(EmptyRows(rows.unreadable, entry, file));
     }
+    std::string damaged;
+    EYEBOX_RETURN_IF_ERROR(MendSideRows(file, entry.side, damaged));
+    if (!damaged.empty()) {
+      EYEBOX_RETURN_IF_ERROR(
+          KeepAside(CapturePath(recording_, entry.number).stem().string() + ".side_rows", damaged));
+    }
+    report_.capture->samples_kept = static_cast<int64_t>(entry.side.sample_count);
     entry.frame_count = rows.whole;
     EYEBOX_ASSIGN_OR_RETURN(entry.digest_xxh3, DigestOf(file, entry));
     EYEBOX_RETURN_IF_ERROR(file.Sync());

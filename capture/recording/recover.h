@@ -19,6 +19,7 @@ struct RecoveredCapture {
   int frames_announced = 0;
   int frames_kept = 0;                 // record and pixels match their checksums
   std::vector<int> damaged_rows = {};  // a frame was there and is not whole: no longer shown as one
+  int64_t samples_kept = 0;            // of the photodiode, whose group matches its checksums
   bool was_renamed = false;            // it had been published but for its record in the manifest
   std::filesystem::path file = {};  // where it is now; empty where it held no frame and was removed
   std::string remark = {};          // why it could not be published; empty otherwise

@@ -55,6 +55,11 @@ absl::StatusOr<VerifyReport> VerifyRecording(const std::filesystem::path& record
       ++report.frames;
       return absl::OkStatus();
     }));
+    EYEBOX_RETURN_IF_ERROR(reader->VisitSamples(capture, [&report](const SampleBlock& block) {
+      report.samples += static_cast<int64_t>(block.samples.size());
+      return absl::OkStatus();
+    }));
+    EYEBOX_RETURN_IF_ERROR(reader->ClockTriples(capture).status());
     std::error_code error;
     const auto size = std::filesystem::file_size(capture.file, error);
     if (error) return SystemFailed(capture.file.string(), error.value(), "check the disk");

@@ -16,6 +16,7 @@
 #include "capture/recording/layout.h"
 #include "capture/recording/manifest.h"
 #include "capture/recording/reader.h"
+#include "capture/recording/side_file.h"
 #include "capture/recording/staging.h"
 
 namespace eyebox::capture {
@@ -32,7 +33,8 @@ std::string Megabytes(double bytes) { return std::to_string(bytes / 1e6) + " MB"
 double NeededBytes(const ManifestEntry& entry) {
   return static_cast<double>(entry.FrameBytes() + sizeof(FrameRecord)) *
              static_cast<double>(entry.row_count) +
-         kSpareBytes;
+         static_cast<double>(entry.side.sample_capacity) * sizeof(SampleRow) +
+         static_cast<double>(entry.side.group_capacity) * sizeof(SampleGroup) + kSpareBytes;
 }
 
 absl::Status DiskFull(const absl::Status& refused, const ManifestEntry& entry) {
@@ -67,7 +69,10 @@ struct Book {
 class FileCapture final : public CaptureWriter {
  public:
   FileCapture(std::shared_ptr<Book> book, ManifestEntry entry, UnixFile file)
-      : book_(std::move(book)), entry_(std::move(entry)), file_(std::move(file)) {
+      : book_(std::move(book)),
+        entry_(std::move(entry)),
+        file_(std::move(file)),
+        side_(entry_.side) {
     book_->capture_open = true;
   }
   ~FileCapture() override { book_->capture_open = false; }
@@ -88,8 +93,23 @@ class FileCapture final : public CaptureWriter {
     return absl::OkStatus();
   }
 
+  absl::Status AppendSamples(const SampleBlock& block) override {
+    EYEBOX_RETURN_IF_ERROR(CheckUsable());
+    EYEBOX_RETURN_IF_ERROR(SideWriter::Check(block, file_));
+    return Remember(side_.Append(block, file_));
+  }
+
+  absl::Status AppendClockTriple(const ClockTriple& triple) override {
+    EYEBOX_RETURN_IF_ERROR(CheckUsable());
+    EYEBOX_RETURN_IF_ERROR(side_.CheckRoomForTriple(file_));
+    return Remember(side_.Append(triple, file_));
+  }
+
+  int64_t samples_lost() const override { return static_cast<int64_t>(side_.rows().samples_lost); }
+
   absl::Status Acknowledge() override {
     EYEBOX_RETURN_IF_ERROR(CheckUsable());
+    EYEBOX_RETURN_IF_ERROR(Remember(side_.CloseGroup(file_)));
     EYEBOX_RETURN_IF_ERROR(Remember(file_.SyncData()));
     acknowledged_ = appended_;
     return absl::OkStatus();
@@ -109,7 +129,10 @@ class FileCapture final : public CaptureWriter {
 
  private:
   absl::Status PublishAcknowledged() {
+    // Samples and triples may have come since the last acknowledgement: Sync() below covers them.
+    EYEBOX_RETURN_IF_ERROR(Remember(side_.CloseGroup(file_)));
     entry_.frame_count = static_cast<int>(acknowledged_);
+    entry_.side = side_.rows();
     EYEBOX_ASSIGN_OR_RETURN(entry_.digest_xxh3, DigestOf(file_, entry_));
     EYEBOX_RETURN_IF_ERROR(Remember(file_.Sync()));
     EYEBOX_RETURN_IF_ERROR(
@@ -166,6 +189,7 @@ class FileCapture final : public CaptureWriter {
   const std::shared_ptr<Book> book_;
   ManifestEntry entry_;
   UnixFile file_;
+  SideWriter side_;
   uint64_t appended_ = 0;
   uint64_t acknowledged_ = 0;
   bool closed_ = false;
@@ -176,8 +200,10 @@ class FileRecording final : public RecordingWriter {
  public:
   explicit FileRecording(Book book) : book_(std::make_shared<Book>(std::move(book))) {}
 
+  using RecordingWriter::BeginCapture;
   absl::StatusOr<std::unique_ptr<CaptureWriter>> BeginCapture(const CaptureSpec& spec,
-                                                              ImageSize frame_size) override {
+                                                              ImageSize frame_size,
+                                                              const SideRoom& room) override {
     EYEBOX_RETURN_IF_ERROR(CheckUsable());
     ManifestEntry entry;
     entry.number = book_->published + 1;
@@ -186,6 +212,8 @@ class FileRecording final : public RecordingWriter {
     entry.frame_count = entry.row_count = spec.repeats;
     const Path partial = PartialPath(book_->recording, entry.number);
     EYEBOX_RETURN_IF_ERROR(CheckShape(partial, entry));
+    EYEBOX_RETURN_IF_ERROR(CheckRoom(partial, room));
+    entry.side = RowsFor(room, spec.repeats);
     // A capture that is taken again begins anew, and its space counts as free.
     std::error_code ignored;
     std::filesystem::remove(partial, ignored);
@@ -237,14 +265,37 @@ class FileRecording final : public RecordingWriter {
     return BadInput(partial.string(), "is to hold frames without pixels", "give the frame size");
   }
 
+  static absl::Status CheckRoom(const Path& partial, const SideRoom& room) {
+    constexpr int64_t kMostSamples = int64_t{1} << 40;  // beyond any disk, within 64 bits of bytes
+    if (room.samples >= 0 && room.samples <= kMostSamples && room.clock_triples >= 0) {
+      return absl::OkStatus();
+    }
+    return BadInput(partial.string(),
+                    "is to have room for " + std::to_string(room.samples) + " samples and " +
+                        std::to_string(room.clock_triples) + " clock triples",
+                    "give none or more of each");
+  }
+
+  static SideRows RowsFor(const SideRoom& room, int frames) {
+    // One group an acknowledgement: a few more than one after every frame.
+    constexpr uint64_t kMoreGroups = 16;
+    SideRows rows;
+    rows.sample_capacity = static_cast<uint64_t>(room.samples);
+    if (room.samples > 0) rows.group_capacity = static_cast<uint64_t>(frames) + kMoreGroups;
+    rows.triple_capacity = static_cast<uint64_t>(room.clock_triples);
+    return rows;
+  }
+
   // libhdf5 has closed the file when its space is reserved.
   absl::StatusOr<UnixFile> Prepare(const Path& partial, ManifestEntry& entry) {
-    EYEBOX_ASSIGN_OR_RETURN(const CaptureFileLayout layout,
-                            CreateCaptureFile(partial, {entry.frame_size, entry.frame_count},
-                                              CaptureMeta(book_->camera, entry.spec)));
+    EYEBOX_ASSIGN_OR_RETURN(
+        const CaptureFileLayout layout,
+        CreateCaptureFile(partial, {entry.frame_size, entry.frame_count, entry.side},
+                          CaptureMeta(book_->camera, entry.spec)));
     entry.file_bytes = layout.file_bytes;
     entry.frames_offset_bytes = layout.frames_offset_bytes;
     entry.records_offset_bytes = layout.records_offset_bytes;
+    entry.side = layout.side;
     EYEBOX_ASSIGN_OR_RETURN(UnixFile file, UnixFile::OpenToWrite(partial));
     EYEBOX_RETURN_IF_ERROR(file.Reserve(layout.file_bytes));
     EYEBOX_RETURN_IF_ERROR(file.Sync());

@@ -12,13 +12,16 @@ namespace eyebox::capture {
 absl::StatusOr<TakenCapture> CaptureTaker::Attempt(const CaptureSpec& spec) {
   EYEBOX_RETURN_IF_ERROR(FromCamera(rig_.camera->Stop()));
   EYEBOX_RETURN_IF_ERROR(Configure(spec));
+  EYEBOX_RETURN_IF_ERROR(samples_.Prepare());
   EYEBOX_RETURN_IF_ERROR(rig_.presenter->Present(spec));
   TakenCapture taken;
-  EYEBOX_ASSIGN_OR_RETURN(taken.writer,
-                          writer_.BeginCapture(spec, rig_.camera->Info().sensor_size));
+  EYEBOX_ASSIGN_OR_RETURN(taken.writer, writer_.BeginCapture(spec, rig_.camera->Info().sensor_size,
+                                                             samples_.RoomFor(spec)));
   EYEBOX_RETURN_IF_ERROR(FromCamera(rig_.camera->Start()));
   EYEBOX_ASSIGN_OR_RETURN(taken.settling, Settle(spec));
+  EYEBOX_RETURN_IF_ERROR(samples_.Begin(*taken.writer));
   EYEBOX_ASSIGN_OR_RETURN(taken.mean, TakeFrames(spec, *taken.writer));
+  taken.samples = samples_.samples();
   return taken;
 }
 
@@ -64,6 +67,8 @@ absl::StatusOr<FrameMean> CaptureTaker::TakeFrames(const CaptureSpec& spec,
     means.push_back(MeanOf(frame.view));
     previous_id = frame.metadata.camera_frame_id;
     const bool last = i + 1 == spec.repeats;
+    EYEBOX_RETURN_IF_ERROR(last ? samples_.Finish(spec, frame.metadata.monotonic_time_ns, capture)
+                                : samples_.Drain(capture));
     if (last || (i + 1) % options_.frames_per_acknowledgement == 0) {
       EYEBOX_RETURN_IF_ERROR(capture.Acknowledge());
     }

@@ -2,6 +2,7 @@
 #ifndef EYEBOX_CAPTURE_RUN_ATTEMPT_H_
 #define EYEBOX_CAPTURE_RUN_ATTEMPT_H_
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 
@@ -11,6 +12,7 @@
 #include "capture/recording/writer.h"
 #include "capture/run.h"
 #include "capture/run/frame_mean.h"
+#include "capture/run/sample_log.h"
 #include "capture/run/settle.h"
 
 namespace eyebox::capture {
@@ -19,13 +21,14 @@ struct TakenCapture {
   std::unique_ptr<CaptureWriter> writer;  // every frame acknowledged
   FrameMean mean;
   std::optional<Settling> settling;
+  int64_t samples = 0;  // of the photodiode
 };
 
 class CaptureTaker {
  public:
   // All must outlive it. The rig's camera may be replaced between attempts.
   CaptureTaker(Rig& rig, RecordingWriter& writer, const RunOptions& options)
-      : rig_(rig), writer_(writer), options_(options) {}
+      : rig_(rig), writer_(writer), options_(options), samples_(rig, options) {}
 
   // Errors: Aborted (spoilt, try again); see camera_lost() for Unavailable; those of RunPlan().
   absl::StatusOr<TakenCapture> Attempt(const CaptureSpec& spec);
@@ -48,6 +51,7 @@ class CaptureTaker {
   Rig& rig_;
   RecordingWriter& writer_;
   const RunOptions& options_;
+  SampleLog samples_;
   bool camera_lost_ = false;
   std::optional<CaptureSpec> settled_on_;
 };

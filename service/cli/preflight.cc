@@ -77,16 +77,10 @@ absl::StatusOr<v1::PreflightResult> Measure(const Options& options) {
   if (rig.origin == capture::RecordingOrigin::kCaptured) {
     rig.presenter = std::make_unique<AskingPresenter>(stdin);
   }
-  std::unique_ptr<capture::Photodiode> photodiode;
-  if (!config.photodiode_uri.empty()) {
-    EYEBOX_ASSIGN_OR_RETURN(
-        photodiode, capture::OpenPhotodiode({.uri = config.photodiode_uri, .seed = config.seed},
-                                            SystemClock()));
-  }
   const int64_t begun_ns = SystemClock()->RealNs();
   EYEBOX_ASSIGN_OR_RETURN(
       const std::vector<Check> checks,
-      RunPreflight(rig, photodiode.get(), options.preflight, TerminalWatcher()));
+      RunPreflight(rig, rig.photodiode.get(), options.preflight, TerminalWatcher()));
   return DescribePreflight(checks, rig, options.preflight.exposures_s, begun_ns);
 }
 

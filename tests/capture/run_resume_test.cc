@@ -162,8 +162,9 @@ class FailingRecording final : public RecordingWriter {
  public:
   FailingRecording(RecordingWriter& writer, int at) : writer_(writer), left_(at) {}
   absl::StatusOr<std::unique_ptr<CaptureWriter>> BeginCapture(const CaptureSpec& spec,
-                                                              ImageSize size) override {
-    auto capture = writer_.BeginCapture(spec, size);
+                                                              ImageSize size,
+                                                              const SideRoom& room) override {
+    auto capture = writer_.BeginCapture(spec, size, room);
     if (!capture.ok()) return std::move(capture).status();
     return std::make_unique<Failing>(*std::move(capture), left_);
   }
@@ -181,6 +182,13 @@ class FailingRecording final : public RecordingWriter {
       if (left_-- == 0) return absl::InternalError("the disk is gone");
       return capture_->Append(frame);
     }
+    absl::Status AppendSamples(const SampleBlock& block) override {
+      return capture_->AppendSamples(block);
+    }
+    absl::Status AppendClockTriple(const ClockTriple& triple) override {
+      return capture_->AppendClockTriple(triple);
+    }
+    int64_t samples_lost() const override { return capture_->samples_lost(); }
     absl::Status Acknowledge() override { return capture_->Acknowledge(); }
     absl::Status Publish() override { return capture_->Publish(); }
     absl::Status PublishEarly() override { return capture_->PublishEarly(); }

@@ -70,8 +70,8 @@ TEST_F(Run, WritesAcknowledgesAndPublishesEveryCaptureInOrder) {
 TEST_F(Run, AcknowledgesInGroups) {
   class Counting final : public RecordingWriter {
    public:
-    absl::StatusOr<std::unique_ptr<CaptureWriter>> BeginCapture(const CaptureSpec&,
-                                                                ImageSize) override {
+    absl::StatusOr<std::unique_ptr<CaptureWriter>> BeginCapture(const CaptureSpec&, ImageSize,
+                                                                const SideRoom&) override {
       return std::make_unique<Writer>(groups);
     }
     absl::Status SuspectSince(int, const std::string&) override { return absl::OkStatus(); }
@@ -82,6 +82,9 @@ TEST_F(Run, AcknowledgesInGroups) {
     struct Writer final : CaptureWriter {
       explicit Writer(std::vector<int>& all) : groups(all) {}
       absl::Status Append(const Frame&) override { return ++pending, absl::OkStatus(); }
+      absl::Status AppendSamples(const SampleBlock&) override { return absl::OkStatus(); }
+      absl::Status AppendClockTriple(const ClockTriple&) override { return absl::OkStatus(); }
+      int64_t samples_lost() const override { return 0; }
       absl::Status Acknowledge() override {
         groups.push_back(pending);
         pending = 0;

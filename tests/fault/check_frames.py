@@ -1,7 +1,8 @@
 """Reads captures with h5py alone and compares them with what they must hold.
 
 A line on stdin is: RECORDING CAPTURE FRAMES. The first FRAMES rows of the capture, published or
-not, must be bit-exact in pixels and id. Prints a line for each capture where they are not.
+not, must be bit-exact in pixels and id, and the samples beside them in counts.
+Prints a line for each capture where they are not.
 """
 
 import os
@@ -9,6 +10,8 @@ import sys
 
 import h5py
 import numpy as np
+
+SAMPLES_PER_FRAME = 3
 
 
 def expected(frame_id: int, shape: tuple[int, int]) -> np.ndarray:
@@ -29,6 +32,12 @@ def complaint(recording: str, capture: int, frames: int) -> str | None:
                     return f"{name}: row {row} holds other pixels"
                 if file["frame_records"][row]["camera_frame_id"] != frame_id:
                     return f"{name}: row {row} holds another record"
+            count = frames * SAMPLES_PER_FRAME
+            groups = file["photodiode/groups"]
+            if groups["count"][groups["written"] == 1].sum() < count:
+                return f"{name}: its groups cover fewer samples than were acknowledged"
+            if not np.array_equal(file["photodiode/samples"]["counts"][:count], -np.arange(count)):
+                return f"{name}: holds other samples"
     except (OSError, KeyError) as error:
         return f"{name}: {error}"
     return None

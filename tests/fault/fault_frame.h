@@ -1,5 +1,5 @@
-// The frames of the fault tests: row r of capture c has id 1000 c + r, and its pixels follow from
-// it.
+// The frames and samples of the fault tests: row r of capture c has id 1000 c + r, and its pixels
+// follow from it.
 #ifndef EYEBOX_TESTS_FAULT_FAULT_FRAME_H_
 #define EYEBOX_TESTS_FAULT_FAULT_FRAME_H_
 
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "capture/base/frame.h"
+#include "capture/base/sample_block.h"
 
 namespace eyebox::capture {
 
@@ -29,6 +30,18 @@ inline Frame FaultFrame(uint64_t id, ImageSize size) {
   frame.view = {.pixels_dn = *counts_dn, .size = size};
   frame.owner = std::move(counts_dn);
   return frame;
+}
+
+// The samples that were taken beside row r of a capture: their counts are their sequence, negative.
+constexpr size_t kSamplesPerFrame = 3;
+
+inline SampleBlock FaultSamples(int row) {
+  SampleBlock block = {.sequence = kSamplesPerFrame * static_cast<uint64_t>(row)};
+  for (size_t i = 0; i < kSamplesPerFrame; ++i) {
+    const auto number = static_cast<int32_t>(block.sequence + i);
+    block.samples.push_back({.monotonic_ns = 100 + number, .counts = -number});
+  }
+  return block;
 }
 
 }  // namespace eyebox::capture

@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <string>
 
 #include "capture/base/status.h"
@@ -31,19 +32,25 @@ struct Options {
 };
 
 absl::Status Fill(CaptureWriter& capture, int number, const Options& options) {
+  const ClockTriple triple = {
+      .monotonic_ns = number, .real_ns = 2, .device_ns = std::nullopt, .window_ns = 3};
+  EYEBOX_RETURN_IF_ERROR(capture.AppendClockTriple(triple));
   for (int i = 0; i < options.frames; ++i) {
     const uint64_t id = kIdsPerCapture * static_cast<uint64_t>(number) + static_cast<uint64_t>(i);
     EYEBOX_RETURN_IF_ERROR(capture.Append(FaultFrame(id, {options.side_px, options.side_px})));
+    EYEBOX_RETURN_IF_ERROR(capture.AppendSamples(FaultSamples(i)));
     if ((i + 1) % kFramesPerGroup != 0 && i + 1 != options.frames) continue;
     EYEBOX_RETURN_IF_ERROR(capture.Acknowledge());
     Say("ack " + std::to_string(number) + " " + std::to_string(i + 1) + "\n");
   }
+  EYEBOX_RETURN_IF_ERROR(capture.AppendClockTriple(triple));
   return capture.Publish();
 }
 
 bool TakesMore(CaptureWriter& capture, const Options& options) {
   return capture.Append(FaultFrame(0, {options.side_px, options.side_px})).ok() ||
-         capture.Acknowledge().ok() || capture.Publish().ok() || capture.PublishEarly().ok();
+         capture.AppendSamples(FaultSamples(0)).ok() || capture.Acknowledge().ok() ||
+         capture.Publish().ok() || capture.PublishEarly().ok();
 }
 
 absl::Status Record(const Options& options) {
@@ -56,9 +63,11 @@ absl::Status Record(const Options& options) {
   CaptureSpec spec;
   spec.exposure_s = 0.01;
   spec.repeats = options.frames;
+  const SideRoom room = {.samples = static_cast<int64_t>(kSamplesPerFrame) * options.frames,
+                         .clock_triples = 2};
   for (int number = 1; number <= options.captures; ++number) {
     EYEBOX_ASSIGN_OR_RETURN(const auto capture,
-                            writer->BeginCapture(spec, header.camera.sensor_size));
+                            writer->BeginCapture(spec, header.camera.sensor_size, room));
     const absl::Status filled = Fill(*capture, number, options);
     if (filled.ok()) continue;
     if (TakesMore(*capture, options)) std::_Exit(kWasNotRefused);

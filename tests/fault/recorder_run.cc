@@ -56,6 +56,26 @@ std::multiset<uint64_t> ShownIds(const std::filesystem::path& recording) {
   return ids;
 }
 
+// Every acknowledged sample is there, and none that was not recorded.
+void ExpectSamples(const RecorderRun& run) {
+  const auto reader = RecordingReader::Open(run.recording);
+  ASSERT_TRUE(reader.ok()) << reader.status();
+  for (const CaptureEntry& capture : (*reader)->Captures()) {
+    size_t samples = 0;
+    const auto compare = [&samples](const SampleBlock& block) {
+      EXPECT_EQ(block, FaultSamples(static_cast<int>(samples / kSamplesPerFrame)));
+      samples += block.samples.size();
+      return absl::OkStatus();
+    };
+    const absl::Status status = (*reader)->VisitSamples(capture, compare);
+    EXPECT_TRUE(status.ok()) << status;
+    const auto acknowledged = run.acknowledged.find(capture.number);
+    if (acknowledged == run.acknowledged.end()) continue;
+    EXPECT_GE(samples, kSamplesPerFrame * static_cast<size_t>(acknowledged->second));
+    EXPECT_FALSE((*reader)->ClockTriples(capture)->empty());
+  }
+}
+
 }  // namespace
 
 ShellOutput RunShell(const std::string& command) {
@@ -153,6 +173,7 @@ void ExpectRecovers(const RecorderRun& run) {
       EXPECT_TRUE(ids.contains(id)) << "frame " << id << " was acknowledged and is lost";
     }
   }
+  ExpectSamples(run);
   const auto again = RecoverRecording(run.recording);
   ASSERT_TRUE(again.ok()) << again.status();
   EXPECT_EQ(again->verified.frames, static_cast<int64_t>(ids.size()));

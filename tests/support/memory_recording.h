@@ -2,6 +2,8 @@
 #ifndef EYEBOX_TESTS_SUPPORT_MEMORY_RECORDING_H_
 #define EYEBOX_TESTS_SUPPORT_MEMORY_RECORDING_H_
 
+#include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
@@ -14,16 +16,22 @@ namespace eyebox::capture {
 struct MemoryCapture {
   CaptureSpec spec;
   std::vector<Frame> frames;
+  std::vector<SampleBlock> blocks;
+  std::vector<ClockTriple> triples;
+  SideRoom room;
+  int64_t samples = 0;
   size_t acknowledged = 0;
   bool published = false;
 };
 
 class MemoryRecording final : public RecordingWriter {
  public:
-  absl::StatusOr<std::unique_ptr<CaptureWriter>> BeginCapture(const CaptureSpec& spec,
-                                                              ImageSize) override {
+  using RecordingWriter::BeginCapture;
+  absl::StatusOr<std::unique_ptr<CaptureWriter>> BeginCapture(const CaptureSpec& spec, ImageSize,
+                                                              const SideRoom& room) override {
     captures_.push_back(std::make_shared<MemoryCapture>());
     captures_.back()->spec = spec;
+    captures_.back()->room = room;
     return std::make_unique<Writer>(captures_.back());
   }
 
@@ -53,6 +61,21 @@ class MemoryRecording final : public RecordingWriter {
     absl::Status Append(const Frame& frame) override {
       capture_->frames.push_back(frame);
       return absl::OkStatus();
+    }
+    absl::Status AppendSamples(const SampleBlock& block) override {
+      capture_->blocks.push_back(block);
+      capture_->samples += static_cast<int64_t>(block.samples.size());
+      return absl::OkStatus();
+    }
+    absl::Status AppendClockTriple(const ClockTriple& triple) override {
+      if (static_cast<int>(capture_->triples.size()) == capture_->room.clock_triples) {
+        return absl::ResourceExhaustedError("no room for another clock triple");
+      }
+      capture_->triples.push_back(triple);
+      return absl::OkStatus();
+    }
+    int64_t samples_lost() const override {
+      return std::max<int64_t>(0, capture_->samples - capture_->room.samples);
     }
     absl::Status Acknowledge() override {
       capture_->acknowledged = capture_->frames.size();

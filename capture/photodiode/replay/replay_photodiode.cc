@@ -4,12 +4,14 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "capture/base/csv.h"
 #include "capture/base/status.h"
 #include "capture/photodiode/photodiode_state.h"
+#include "capture/recording/reader.h"
 
 namespace eyebox::capture {
 namespace {
@@ -110,18 +112,52 @@ absl::StatusOr<std::vector<SampleBlock>> BlocksOf(const CsvTable& table) {
   return builder.Take();
 }
 
+// The captures one after another: each counted from 0, and goes on counting here.
+absl::StatusOr<std::vector<SampleBlock>> RecordedBlocks(const std::filesystem::path& recording) {
+  EYEBOX_ASSIGN_OR_RETURN(const auto reader, RecordingReader::Open(recording));
+  std::vector<SampleBlock> blocks;
+  uint64_t next = 0;
+  uint64_t lost = 0;  // behind the last block, for want of room in its file
+  for (const CaptureEntry& capture : reader->Captures()) {
+    if (!capture.suspect.empty()) continue;
+    const uint64_t begin = next + lost;
+    EYEBOX_RETURN_IF_ERROR(reader->VisitSamples(capture, [&](const SampleBlock& block) {
+      blocks.push_back(block);
+      blocks.back().sequence += begin;
+      blocks.back().lost_before = blocks.back().sequence - next;
+      next = blocks.back().sequence + block.samples.size();
+      return absl::OkStatus();
+    }));
+    lost = (next > begin ? 0 : lost) + static_cast<uint64_t>(capture.samples_lost);
+  }
+  if (!blocks.empty()) return blocks;
+  return Missing(recording.string(), "is a recording without samples of a photodiode",
+                 "name one that was captured with a photodiode");
+}
+
+// What cannot be looked at is reported by the reading.
+absl::StatusOr<std::vector<SampleBlock>> ReadBlocks(std::filesystem::path file) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) {
+    const bool has_table = std::filesystem::exists(file / "photodiode.csv", ignored);
+    if (!has_table && std::filesystem::exists(file / "manifest.log", ignored)) {
+      return RecordedBlocks(file);
+    }
+    file /= "photodiode.csv";
+  }
+  EYEBOX_ASSIGN_OR_RETURN(const CsvTable table, ReadCsv(file, kFileLimitBytes));
+  return BlocksOf(table);
+}
+
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Photodiode>> OpenReplayPhotodiode(const PhotodiodeConfig& config,
                                                                  const Clock*) {
-  std::filesystem::path file = config.uri.substr(kScheme.size());
+  const std::filesystem::path file = config.uri.substr(kScheme.size());
   if (file.empty()) {
     return BadInput(config.uri, "names no folder", "give a URI like replay:recordings/a");
   }
-  std::error_code ignored;  // what cannot be looked at is reported by the reading below
-  if (std::filesystem::is_directory(file, ignored)) file /= "photodiode.csv";
-  EYEBOX_ASSIGN_OR_RETURN(const CsvTable table, ReadCsv(file, kFileLimitBytes));
-  EYEBOX_ASSIGN_OR_RETURN(std::vector<SampleBlock> blocks, BlocksOf(table));
+  EYEBOX_ASSIGN_OR_RETURN(std::vector<SampleBlock> blocks, ReadBlocks(file));
   PhotodiodeInfo info = {.uri = config.uri,
                          .model = "recorded samples",
                          .significant_bits = 32,

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "capture/base/file.h"
+#include "capture/recording/writer.h"
 
 namespace eyebox::capture {
 namespace {
@@ -87,6 +88,18 @@ TEST_F(ReplayPhotodiode, AMissingFolderIsNamed) {
   const auto photodiode = OpenPhotodiode({.uri = "replay:/nowhere/at/all"}, &clock_);
   EXPECT_TRUE(absl::IsNotFound(photodiode.status()));
   EXPECT_THAT(photodiode.status().message(), HasSubstr("/nowhere/at/all"));
+}
+
+TEST_F(ReplayPhotodiode, ARecordingWithoutSamplesIsMissingThem) {
+  RecordingHeader header;
+  header.rig = {.name = "test", .camera_uri = "sim:test"};
+  header.camera.sensor_size = {.width_px = 4, .height_px = 3};
+  header.camera.significant_bits = 12;
+  const absl::Status created = RecordingWriter::Create(folder_, header, &clock_).status();
+  ASSERT_TRUE(created.ok()) << created;
+  const auto photodiode = OpenPhotodiode({.uri = "replay:" + folder_.string()}, &clock_);
+  EXPECT_TRUE(absl::IsNotFound(photodiode.status())) << photodiode.status();
+  EXPECT_THAT(std::string(photodiode.status().message()), HasSubstr("without samples"));
 }
 
 }  // namespace

@@ -78,5 +78,39 @@ TEST_F(PlainH5py, OpensACaptureThatWasNeverPublished) {
   EXPECT_EQ(Inspect(recording / "captures/000001.h5.partial"), kExpected);
 }
 
+TEST_F(PlainH5py, ReadsSamplesAndClockTriples) {
+  const std::filesystem::path recording = folder_ / "samples";
+  const auto writer = RecordingWriter::Create(recording, HeaderOf(), SystemClock());
+  ASSERT_TRUE(writer.ok()) << writer.status();
+  {
+    const auto capture = (*writer)->BeginCapture(SpecOf(1), kFrameSize, {3, 2});
+    ASSERT_TRUE(capture.ok()) << capture.status();
+    ASSERT_TRUE(
+        (*capture)
+            ->AppendClockTriple({.monotonic_ns = 8, .real_ns = 9, .device_ns = 7, .window_ns = 2})
+            .ok());
+    ASSERT_TRUE((*capture)->Append(FrameOf(2)).ok());
+    ASSERT_TRUE(
+        (*capture)
+            ->AppendSamples({.sequence = 4, .lost_before = 4, .samples = {{1000, -5}, {2000, 6}}})
+            .ok());
+    ASSERT_TRUE((*capture)->Acknowledge().ok());
+    ASSERT_TRUE((*capture)->Publish().ok());
+  }
+  ASSERT_TRUE(PackRecording(recording, folder_ / "packed").ok());
+  for (const auto& folder : {recording, folder_ / "packed"}) {
+    EXPECT_EQ(RunShell(std::string(kPython) + R"( -c '
+import h5py, sys
+with h5py.File(sys.argv[1], "r") as f:
+    samples, groups, triples = f["photodiode/samples"], f["photodiode/groups"], f["clock_triples"]
+    count = int(groups["count"].sum())
+    print(len(samples), count, samples["counts"][:count], samples["monotonic_ns"][:count],
+          samples["sequence"][:count], samples["lost_before"][:count])
+    print(len(triples), triples["monotonic_ns"][0], triples["device_ns"][0], triples["written"])
+' )" + (folder / "captures/000001.h5").string()),
+              "3 2 [-5  6] [1000 2000] [4 5] [4 0]\n2 8 7 [1 0]\n");
+  }
+}
+
 }  // namespace
 }  // namespace eyebox::capture

@@ -33,7 +33,7 @@ enum class RecordingOrigin {
 
 struct RigConfig {
   std::string name;                 // resource name, [a-z0-9-]
-  std::string camera_uri;           // "sim:NAME" or "replay:DIR"; see CameraSchemes()
+  std::string camera_uri;           // "aravis:ID", "sim:NAME", ...; see CameraSchemes()
   uint64_t seed = 1;                // of everything random in a simulated rig
   std::string photodiode_uri = {};  // as OpenPhotodiode() takes it; empty: none
   std::string trigger_uri = {};     // as OpenTrigger() takes it; empty: none

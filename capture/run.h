@@ -59,6 +59,10 @@ struct RunOptions {
   std::function<absl::StatusOr<std::unique_ptr<Camera>>()> reopen = nullptr;
   // Of the rig's photodiode, if it has one; the nearest that it can do.
   double photodiode_rate_hz = 1000;
+  // Of the rig's trigger, if it has one: one pulse a frame. A photodiode that pulses can start then
+  // converts once a frame; the camera is triggered by the pulse if the rig says so, else by
+  // software right after it.
+  std::chrono::microseconds trigger_pulse{100};
   const Clock* clock = SystemClock();  // of the clock triples; that of the rig
 
   // Errors: InvalidArgument (names the field).

@@ -243,7 +243,10 @@ absl::StatusOr<v1::RunResult> ReplayRecording(const std::filesystem::path& recor
   EYEBOX_ASSIGN_OR_RETURN(const auto original, capture::RecordingReader::Open(recording));
   capture::RigConfig config = original->Header().rig;
   config.camera_uri = "replay:" + recording.string();
-  config.photodiode_uri.clear();  // it would look at another display, or at none
+  // They would look at another display, or at none.
+  config.photodiode_uri.clear();
+  config.trigger_uri.clear();
+  config.camera_trigger_line.clear();
   EYEBOX_ASSIGN_OR_RETURN(capture::Rig rig, capture::OpenRig(config, SystemClock()));
   EYEBOX_RETURN_IF_ERROR(
       RecordPlan(rig, PlanOf(*original), replayed, watcher.Part(0, kCaptureShare)).status());

@@ -46,6 +46,9 @@ absl::StatusOr<Rig> OpenRig(const RigConfig& config, const Clock* clock) {
     EYEBOX_ASSIGN_OR_RETURN(
         rig.photodiode, OpenPhotodiode({.uri = config.photodiode_uri, .seed = config.seed}, clock));
   }
+  if (!config.trigger_uri.empty()) {
+    EYEBOX_ASSIGN_OR_RETURN(rig.trigger, OpenTrigger(config.trigger_uri, clock));
+  }
   return rig;
 }
 

@@ -12,6 +12,7 @@
 #include "capture/base/clock.h"
 #include "capture/camera/camera.h"
 #include "capture/photodiode/photodiode.h"
+#include "capture/trigger/trigger.h"
 
 namespace eyebox::capture {
 
@@ -37,6 +38,9 @@ struct RigConfig {
   uint64_t seed = 1;                // of everything random in a simulated rig
   std::string photodiode_uri = {};  // as OpenPhotodiode() takes it; empty: none
   std::string trigger_uri = {};     // as OpenTrigger() takes it; empty: none
+  // The camera's input that the trigger is wired to, one of CameraInfo::trigger_lines; empty: its
+  // pulses reach the photodiode alone.
+  std::string camera_trigger_line = {};
 };
 
 // Camera and presenter may share state (a simulated headset), which lives as long as either.
@@ -46,9 +50,10 @@ struct Rig {
   std::unique_ptr<Camera> camera;
   std::unique_ptr<StimulusPresenter> presenter;
   std::unique_ptr<Photodiode> photodiode = nullptr;  // null where config names none
+  std::unique_ptr<Trigger> trigger = nullptr;        // likewise
 };
 
-// Opens what the URIs of camera and photodiode name. `clock` must outlive the rig.
+// Opens what the URIs of camera, photodiode and trigger name. `clock` must outlive the rig.
 // Errors: InvalidArgument (unknown scheme: lists the known ones), NotFound, Unavailable.
 absl::StatusOr<Rig> OpenRig(const RigConfig& config, const Clock* clock);
 

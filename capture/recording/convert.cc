@@ -152,6 +152,7 @@ v1::Rig ToProto(const RigConfig& rig) {
   proto.set_seed(rig.seed);
   proto.set_photodiode_uri(rig.photodiode_uri);
   proto.set_trigger_uri(rig.trigger_uri);
+  proto.set_camera_trigger_line(rig.camera_trigger_line);
   return proto;
 }
 
@@ -226,11 +227,16 @@ absl::StatusOr<RigConfig> FromProto(const v1::Rig& proto, const std::string& whe
   if (proto.camera_uri().empty()) {
     return BadInput(where + " camera_uri", "is empty", "give for example \"sim:rift-s-like\"");
   }
+  if (!proto.camera_trigger_line().empty() && proto.trigger_uri().empty()) {
+    return BadInput(where + " camera_trigger_line", "is given without a trigger",
+                    "name the trigger that is wired to it in trigger_uri");
+  }
   return RigConfig{.name = proto.name(),
                    .camera_uri = proto.camera_uri(),
                    .seed = proto.seed(),
                    .photodiode_uri = proto.photodiode_uri(),
-                   .trigger_uri = proto.trigger_uri()};
+                   .trigger_uri = proto.trigger_uri(),
+                   .camera_trigger_line = proto.camera_trigger_line()};
 }
 
 absl::StatusOr<CameraInfo> FromProto(const v1::CameraInfo& proto, const std::string& where) {

@@ -1,5 +1,7 @@
 #include "capture/run/attempt.h"
 
+#include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,7 +28,11 @@ absl::StatusOr<TakenCapture> CaptureTaker::Attempt(const CaptureSpec& spec) {
 }
 
 absl::Status CaptureTaker::Configure(const CaptureSpec& spec) {
-  const CameraSettings asked = {.exposure_s = spec.exposure_s, .gain_db = spec.gain_db};
+  CameraSettings asked = {.exposure_s = spec.exposure_s, .gain_db = spec.gain_db};
+  if (IsWired()) {
+    asked.trigger = TriggerSource::kLine;
+    asked.trigger_line = rig_.config.camera_trigger_line;
+  }
   const absl::StatusOr<CameraSettings> set = rig_.camera->Configure(asked);
   EYEBOX_RETURN_IF_ERROR(FromCamera(set.status()));
   return CheckReadBack(asked, *set, rig_.camera->Info().uri, options_.exposure_tolerance);
@@ -80,7 +86,7 @@ absl::StatusOr<Frame> CaptureTaker::TakeFrame(const CaptureSpec& spec) {
   if (options_.cancelled && options_.cancelled()) {
     return absl::CancelledError("the run was cancelled");
   }
-  EYEBOX_RETURN_IF_ERROR(FromCamera(rig_.camera->Trigger()));
+  EYEBOX_ASSIGN_OR_RETURN(const std::optional<int64_t> pulse_ns, StartExposure());
   const auto exposure = std::chrono::duration<double, std::milli>(spec.exposure_s * 1e3);
   const auto timeout =
       options_.frame_timeout + std::chrono::ceil<std::chrono::milliseconds>(exposure);
@@ -90,7 +96,27 @@ absl::StatusOr<Frame> CaptureTaker::TakeFrame(const CaptureSpec& spec) {
                   ")");
   }
   EYEBOX_RETURN_IF_ERROR(FromCamera(frame.status()));
+  if (pulse_ns) frame->metadata.trigger_time_ns = pulse_ns;
   return frame;
+}
+
+bool CaptureTaker::IsWired() const {
+  return rig_.trigger && !rig_.config.camera_trigger_line.empty();
+}
+
+absl::StatusOr<std::optional<int64_t>> CaptureTaker::StartExposure() {
+  std::optional<int64_t> pulse_ns;
+  if (rig_.trigger) {
+    const absl::StatusOr<Pulse> pulse = rig_.trigger->Fire(options_.trigger_pulse);
+    if (absl::IsUnavailable(pulse.status())) {
+      return Spoilt("the trigger failed (" + std::string(pulse.status().message()) + ")");
+    }
+    EYEBOX_RETURN_IF_ERROR(pulse.status());
+    pulse_ns = std::midpoint(pulse->on.before_ns, pulse->on.after_ns);
+  }
+  if (IsWired()) return pulse_ns;
+  EYEBOX_RETURN_IF_ERROR(FromCamera(rig_.camera->Trigger()));
+  return std::nullopt;
 }
 
 absl::Status CaptureTaker::FromCamera(absl::Status status) {

@@ -45,6 +45,9 @@ class CaptureTaker {
   absl::StatusOr<std::optional<Settling>> Settle(const CaptureSpec& spec);
   absl::StatusOr<FrameMean> TakeFrames(const CaptureSpec& spec, CaptureWriter& capture);
   absl::StatusOr<Frame> TakeFrame(const CaptureSpec& spec);
+  bool IsWired() const;  // the trigger to the camera
+  // CLOCK_MONOTONIC of the pulse that started it; nothing where software did.
+  absl::StatusOr<std::optional<int64_t>> StartExposure();
   absl::Status FromCamera(absl::Status status);
   bool IsSettledOn(const CaptureSpec& spec) const;
 

@@ -28,13 +28,16 @@ absl::Status SampleLog::Prepare() {
   const PhotodiodeInfo& info = rig_.photodiode->Info();
   const double rate_hz =
       std::clamp(options_.photodiode_rate_hz, info.sample_rate_min_hz, info.sample_rate_max_hz);
-  const auto set = rig_.photodiode->Configure({.sample_rate_hz = rate_hz, .pulse_started = false});
+  pulse_started_ = rig_.trigger != nullptr && info.can_be_pulse_started;
+  const auto set =
+      rig_.photodiode->Configure({.sample_rate_hz = rate_hz, .pulse_started = pulse_started_});
   EYEBOX_RETURN_IF_ERROR(Failed(set.status()));
-  rate_hz_ = set->sample_rate_hz;
+  if (!pulse_started_) rate_hz_ = set->sample_rate_hz;
   return absl::OkStatus();
 }
 
 SideRoom SampleLog::RoomFor(const CaptureSpec& spec) const {
+  if (pulse_started_) return {.samples = spec.repeats, .clock_triples = kTriples};
   const double frame_s = spec.exposure_s + std::max(beyond_exposure_s_, kUnseenFrameS);
   const double samples = rate_hz_ * (kMargin * spec.repeats * frame_s + kLongerS);
   return {.samples = static_cast<int64_t>(std::ceil(std::min(samples, kMostSamples))),
@@ -65,13 +68,19 @@ absl::Status SampleLog::Finish(const CaptureSpec& spec, int64_t last_frame_ns,
   NoteDuration(spec, options_.clock->MonotonicNs());
   // Converters hand over whole buffers: the one that covers the last frame may still be filling.
   const auto period_ns = rate_hz_ > 0 ? static_cast<int64_t>(1e9 / rate_hz_) : 0;
-  for (int i = 0; waiting_ && last_sample_ns_ + period_ns < last_frame_ns && i < kBlocksAtOnce;
-       ++i) {
+  const auto is_covered = [&] {
+    return pulse_started_ ? samples_ >= spec.repeats : last_sample_ns_ + period_ns >= last_frame_ns;
+  };
+  for (int i = 0; waiting_ && !is_covered() && i < kBlocksAtOnce; ++i) {
     const int64_t before = samples_;
     EYEBOX_RETURN_IF_ERROR(Read(kLastBlock, capture));
     waiting_ &= samples_ > before;
   }
   if (rig_.photodiode) EYEBOX_RETURN_IF_ERROR(Failed(rig_.photodiode->Stop()));
+  if (pulse_started_ && samples_ != spec.repeats) {
+    return Spoilt(std::to_string(spec.repeats) + " pulses of the trigger gave " +
+                  std::to_string(samples_) + " conversions of the photodiode");
+  }
   return AppendTriple(capture);
 }
 

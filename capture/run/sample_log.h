@@ -45,7 +45,8 @@ class SampleLog {
   int64_t begun_ns_ = 0;
   int64_t last_sample_ns_ = 0;
   int64_t samples_ = 0;
-  bool waiting_ = false;  // more samples may come
+  bool waiting_ = false;        // more samples may come
+  bool pulse_started_ = false;  // one conversion a frame
 };
 
 }  // namespace eyebox::capture

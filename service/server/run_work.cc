@@ -24,7 +24,8 @@ capture::RigConfig ConfigOf(const v1::Rig& rig) {
           .camera_uri = rig.camera_uri(),
           .seed = rig.seed(),
           .photodiode_uri = rig.photodiode_uri(),
-          .trigger_uri = rig.trigger_uri()};
+          .trigger_uri = rig.trigger_uri(),
+          .camera_trigger_line = rig.camera_trigger_line()};
 }
 
 // A client knows its recording by name; how the server got hold of it says nothing.

@@ -73,6 +73,11 @@ TEST_F(RigFile, NamesPhotodiodeAndTrigger) {
   EXPECT_EQ(rig->trigger_uri, "gpiochip0:17");
   EXPECT_THAT(Refusal(camera + "photodiode_uri: \"adc:0\""), HasSubstr("iio: serial: sim:"));
   EXPECT_THAT(Refusal(camera + "trigger_uri: \"button\""), HasSubstr("trigger_uri"));
+  const std::string line = "camera_trigger_line: \"Line0\"";
+  EXPECT_THAT(Refusal(camera + line), HasSubstr("camera_trigger_line"));
+  const auto wired = Read(camera + "trigger_uri: \"gpiochip0:17\" " + line);
+  ASSERT_TRUE(wired.ok()) << wired.status();
+  EXPECT_EQ(wired->camera_trigger_line, "Line0");
 }
 
 TEST_F(RigFile, ThatIsMissingIsNotFound) {

@@ -181,29 +181,40 @@ TEST_F(AravisLoopback, WhatAnotherClientLeftBehindIsCleared) {
   g_object_unref(other);
 }
 
-TEST_F(AravisLoopback, AFrameThatLostPacketsIsNeverData) {
-  StartCamera(5);  // of 189 packets a frame: 6 frames of 10 lose one or more
-  const auto camera = Open();
-  ASSERT_TRUE(camera->Configure({.exposure_s = 0.01}).ok());
-  ASSERT_TRUE(camera->Start().ok());
+// A frame is 189 packets, so that of 10 frames 2, 8 and all lose one or more.
+TEST_F(AravisLoopback, AFrameThatLostPacketsIsNeverDataHoweverManyAreLost) {
+  const struct {
+    int lost_packets_per_thousand;
+    int frames;
+  } losses[] = {{1, 80}, {10, 30}, {100, 10}};
   int whole = 0;
-  int incomplete = 0;
-  for (int i = 0; i < 40; ++i) {
-    const auto frame = TakeFrame(*camera);
-    ASSERT_TRUE(frame.ok()) << frame.status();
-    if (frame->metadata.status == BufferStatus::kComplete) {
-      EXPECT_TRUE(IsRamp(*frame));
-      EXPECT_EQ(frame->metadata.missing_packets, 0);
-      ++whole;
-      continue;
+  for (const auto& loss : losses) {
+    StartCamera(loss.lost_packets_per_thousand);
+    auto camera = Open();
+    ASSERT_TRUE(camera->Configure({.exposure_s = 0.01}).ok());
+    ASSERT_TRUE(camera->Start().ok());
+    int spoilt = 0;
+    for (int i = 0; i < loss.frames; ++i) {
+      const auto frame = TakeFrame(*camera);
+      if (absl::IsDeadlineExceeded(frame.status())) {  // nothing of it came that tells its end
+        ++spoilt;
+        continue;
+      }
+      ASSERT_TRUE(frame.ok()) << frame.status();
+      if (frame->metadata.status == BufferStatus::kComplete) {
+        EXPECT_TRUE(IsRamp(*frame));
+        EXPECT_EQ(frame->metadata.missing_packets, 0);
+        ++whole;
+        continue;
+      }
+      EXPECT_TRUE(frame->view.pixels_dn.empty());
+      ++spoilt;
     }
-    EXPECT_EQ(frame->metadata.status, BufferStatus::kMissingPackets);
-    EXPECT_GT(frame->metadata.missing_packets, 0);
-    EXPECT_TRUE(frame->view.pixels_dn.empty());
-    ++incomplete;
+    EXPECT_GT(spoilt, 0) << loss.lost_packets_per_thousand << " packets of 1000 lost";
+    camera.reset();  // before its process ends: closing a camera that is gone takes Aravis 10 s
+    process_.reset();
   }
   EXPECT_GT(whole, 0);
-  EXPECT_GT(incomplete, 0);
 }
 
 TEST_F(AravisLoopback, ARunOverALossyNetworkRecordsWholeFramesOnly) {

@@ -212,6 +212,7 @@ RecordingHeader MakeHeader(const Rig& rig, const CapturePlan& plan, const Clock&
   header.rig = rig.config;
   header.camera = rig.camera->Info();
   header.geometry = rig.camera->Info().geometry;
+  header.camera_settings = StateOf(rig);
   header.plan = plan;
   header.software_version = std::string(kVersion);
   header.created_real_ns = clock.RealNs();

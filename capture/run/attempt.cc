@@ -11,6 +11,14 @@
 
 namespace eyebox::capture {
 
+CameraSettings StateOf(const Rig& rig) {
+  CameraSettings state;
+  if (!rig.trigger || rig.config.camera_trigger_line.empty()) return state;
+  state.trigger = TriggerSource::kLine;
+  state.trigger_line = rig.config.camera_trigger_line;
+  return state;
+}
+
 absl::StatusOr<TakenCapture> CaptureTaker::Attempt(const CaptureSpec& spec) {
   EYEBOX_RETURN_IF_ERROR(FromCamera(rig_.camera->Stop()));
   EYEBOX_RETURN_IF_ERROR(Configure(spec));
@@ -28,11 +36,9 @@ absl::StatusOr<TakenCapture> CaptureTaker::Attempt(const CaptureSpec& spec) {
 }
 
 absl::Status CaptureTaker::Configure(const CaptureSpec& spec) {
-  CameraSettings asked = {.exposure_s = spec.exposure_s, .gain_db = spec.gain_db};
-  if (IsWired()) {
-    asked.trigger = TriggerSource::kLine;
-    asked.trigger_line = rig_.config.camera_trigger_line;
-  }
+  CameraSettings asked = StateOf(rig_);
+  asked.exposure_s = spec.exposure_s;
+  asked.gain_db = spec.gain_db;
   const absl::StatusOr<CameraSettings> set = rig_.camera->Configure(asked);
   EYEBOX_RETURN_IF_ERROR(FromCamera(set.status()));
   return CheckReadBack(asked, *set, rig_.camera->Info().uri, options_.exposure_tolerance);
@@ -100,10 +106,6 @@ absl::StatusOr<Frame> CaptureTaker::TakeFrame(const CaptureSpec& spec) {
   return frame;
 }
 
-bool CaptureTaker::IsWired() const {
-  return rig_.trigger && !rig_.config.camera_trigger_line.empty();
-}
-
 absl::StatusOr<std::optional<int64_t>> CaptureTaker::StartExposure() {
   std::optional<int64_t> pulse_ns;
   if (rig_.trigger) {
@@ -114,7 +116,7 @@ absl::StatusOr<std::optional<int64_t>> CaptureTaker::StartExposure() {
     EYEBOX_RETURN_IF_ERROR(pulse.status());
     pulse_ns = std::midpoint(pulse->on.before_ns, pulse->on.after_ns);
   }
-  if (IsWired()) return pulse_ns;
+  if (StateOf(rig_).trigger == TriggerSource::kLine) return pulse_ns;
   EYEBOX_RETURN_IF_ERROR(FromCamera(rig_.camera->Trigger()));
   return std::nullopt;
 }

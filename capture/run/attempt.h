@@ -17,6 +17,9 @@
 
 namespace eyebox::capture {
 
+// What every capture of a run sets alike: all but exposure and gain.
+CameraSettings StateOf(const Rig& rig);
+
 struct TakenCapture {
   std::unique_ptr<CaptureWriter> writer;  // every frame acknowledged
   FrameMean mean;
@@ -45,7 +48,6 @@ class CaptureTaker {
   absl::StatusOr<std::optional<Settling>> Settle(const CaptureSpec& spec);
   absl::StatusOr<FrameMean> TakeFrames(const CaptureSpec& spec, CaptureWriter& capture);
   absl::StatusOr<Frame> TakeFrame(const CaptureSpec& spec);
-  bool IsWired() const;  // the trigger to the camera
   // CLOCK_MONOTONIC of the pulse that started it; nothing where software did.
   absl::StatusOr<std::optional<int64_t>> StartExposure();
   absl::Status FromCamera(absl::Status status);

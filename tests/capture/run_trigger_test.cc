@@ -129,6 +129,9 @@ TEST_F(RunWithTrigger, AWiredCameraExposesOncePerPulseAndItsFramesCarryThePulses
   const auto report = RunPlan(rig_, plan_, recording_);
   ASSERT_TRUE(report.ok()) << report.status();
   EXPECT_EQ(report->captures_taken_again, 0);
+  const RecordingHeader header = MakeHeader(rig_, plan_, *SystemClock());
+  EXPECT_EQ(header.camera_settings->trigger, TriggerSource::kLine);
+  EXPECT_EQ(header.camera_settings->trigger_line, "Line0");
   int64_t last_ns = 0;
   for (const auto& capture : recording_.Published()) {
     ASSERT_THAT(capture->frames, SizeIs(kRepeats));

@@ -6,6 +6,7 @@
 #include "capture/base/status.h"
 #include "service/artifacts.h"
 #include "service/results/parameter.h"
+#include "service/results/sigma_map.h"
 
 namespace eyebox::service {
 namespace {
@@ -13,14 +14,6 @@ namespace {
 // A linear sensor's pairs agree with 1; beyond this the luminance scale depends on the exposure.
 constexpr double kNotedNonlinearity = 0.01;
 constexpr double kNearlyAll = 0.9;  // of the pixels
-
-Image<float> Sigmas(const optics::MeasuredImage& image) {
-  Image<float> sigma(image.size());
-  for (size_t i = 0; i < sigma.pixels().size(); ++i) {
-    sigma.pixels()[i] = std::sqrt(image.variance.pixels()[i]);
-  }
-  return sigma;
-}
 
 Image<float> MaskAsFloat(const optics::MeasuredImage& image) {
   Image<float> mask(image.size());
@@ -104,9 +97,9 @@ absl::Status AddMaps(const optics::MeasuredImage& image, const std::filesystem::
                      v1::ReduceResult& result) {
   EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(),
                           WriteMap(folder, "luminance.npy", "luminance", image.unit, image.value));
-  EYEBOX_ASSIGN_OR_RETURN(
-      *result.add_maps(),
-      WriteMap(folder, "luminance_sigma.npy", "luminance_sigma", image.unit, Sigmas(image)));
+  EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(),
+                          WriteMap(folder, "luminance_sigma.npy", "luminance_sigma", image.unit,
+                                   SigmaMap(image.variance)));
   EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(),
                           WriteMap(folder, "mask.npy", "mask", "1", MaskAsFloat(image)));
   return absl::OkStatus();

@@ -6,6 +6,7 @@
 #include "capture/base/status.h"
 #include "service/artifacts.h"
 #include "service/results/parameter.h"
+#include "service/results/sigma_map.h"
 
 namespace eyebox::service {
 namespace {
@@ -29,14 +30,6 @@ v1::UniformityPoint Describe(const optics::PatchMean& patch,
     point.set_y_deg(FieldAngleDeg(geometry->principal_y_px - patch.y_px, *geometry));
   }
   return point;
-}
-
-Image<float> Sigmas(const Image<float>& variance) {
-  Image<float> sigma(variance.size());
-  for (size_t i = 0; i < sigma.pixels().size(); ++i) {
-    sigma.pixels()[i] = std::sqrt(variance.pixels()[i]);
-  }
-  return sigma;
 }
 
 // Smallest and largest g of the smooth model over the valid pixels.
@@ -75,7 +68,7 @@ absl::Status AddMaps(const optics::UniformityMap& map, const std::filesystem::pa
   EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(),
                           WriteMap(folder, "uniformity_g.npy", "g", "1", map.raw.value));
   EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(), WriteMap(folder, "uniformity_g_sigma.npy", "g_sigma",
-                                                       "1", Sigmas(map.raw.variance)));
+                                                       "1", SigmaMap(map.raw.variance)));
   EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(), WriteMap(folder, "uniformity_g_smooth.npy",
                                                        "g_smooth", "1", map.smooth.Values()));
   EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(), WriteMap(folder, "uniformity_g_smooth_sigma.npy",

@@ -6,16 +6,12 @@
 #include <optional>
 
 #include "absl/status/statusor.h"
+#include "optics/geometry/pixel_point.h"
 #include "optics/photometry/luminance_image.h"
 #include "optics/uniformity/point_uniformity.h"
 #include "optics/uniformity/smooth_field.h"
 
 namespace eyebox::optics {
-
-struct PixelPoint {
-  double x_px = 0;  // pixel centres are at whole numbers
-  double y_px = 0;
-};
 
 struct UniformityOptions {
   std::optional<PixelPoint> reference;      // image centre unless given

@@ -22,7 +22,8 @@ import cpp
 
 ROOT = Path(__file__).resolve().parents[2]
 PASSED = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "eyebox" / "tidy"
-GCC_ONLY = re.compile(r" -f(?:vect-cost-model=\S+|no-tree-\S+|tree-\S+)")
+GCC_ONLY = re.compile(r" -f(?:vect-cost-model=\S+|no-tree-\S+|tree-\S+)"
+                      r"| -Winvalid-pch| -include \S+cmake_pch\.hxx")
 
 
 def sources_of(build, folders):

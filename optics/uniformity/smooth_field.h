@@ -1,4 +1,4 @@
-// A smooth function over the image: a 2-D polynomial with the covariance of its coefficients.
+// A smooth function over the image, with the covariance of its coefficients.
 #ifndef EYEBOX_OPTICS_UNIFORMITY_SMOOTH_FIELD_H_
 #define EYEBOX_OPTICS_UNIFORMITY_SMOOTH_FIELD_H_
 
@@ -7,15 +7,17 @@
 #include "absl/status/statusor.h"
 #include "capture/base/image.h"
 #include "optics/reduce/measured_image.h"
+#include "optics/uniformity/field_basis.h"
 
 namespace eyebox::optics {
 
-// Sum over a, b with a + b <= order of c_ab P_a(x') P_b(y'), P the Legendre polynomials, x' and y'
-// running from -1 to 1 over the image. Coefficients in the order (0,0), (1,0), (0,1), (2,0), ...
+// Sum of coefficients times the functions of FieldBasis(model, order, size), in the order of its
+// terms.
 struct SmoothField {
   ImageSize size;
-  int order = 0;
-  std::vector<double> coefficients;  // n = (order + 1) (order + 2) / 2
+  FieldModel model = FieldModel::kPolynomial;
+  int order = 0;                     // of a spline: intervals along the longer side
+  std::vector<double> coefficients;  // n; of a polynomial (order + 1) (order + 2) / 2
   std::vector<double> covariance;    // [n, n] row-major
   double reduced_chi2 = 0;           // of the fit; above 1 the covariance has been scaled by it
 
@@ -27,9 +29,9 @@ struct SmoothField {
 };
 
 // Least squares weighted with 1/variance over the valid pixels.
-// Errors: InvalidArgument (order outside 0 to 8), FailedPrecondition (fewer valid pixels than
-// coefficients, or a singular system: all valid pixels on a line).
-absl::StatusOr<SmoothField> FitSmoothField(const MeasuredImage& image, int order);
+// Errors: InvalidArgument (order outside 0 to 8, intervals outside 1 to 16), FailedPrecondition
+// (fewer valid pixels than coefficients, or a singular system: a function without a valid pixel).
+absl::StatusOr<SmoothField> FitSmoothField(const MeasuredImage& image, FieldModel model, int order);
 
 // Divided by its value at a point, which becomes 1 with no uncertainty.
 // Errors: FailedPrecondition (value there not above 0).

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "capture/base/status.h"
@@ -60,8 +61,61 @@ MeasuredImage RatioToReference(const MeasuredImage& luminance, const Disk& disk,
   return ratio;
 }
 
+// Both kinds of smooth model, at their best size or the one asked for; the one that predicts better
+// first. With a size given, that kind is taken.
+absl::Status FitSmoothModels(const MeasuredImage& luminance, const UniformityOptions& options,
+                             const PixelPoint& reference, UniformityMap& map) {
+  EYEBOX_ASSIGN_OR_RETURN(map.choice, CrossValidate(luminance));
+  const int order = options.polynomial_order.value_or(map.choice.polynomial.size);
+  const int intervals = options.spline_intervals.value_or(map.choice.spline.size);
+  EYEBOX_ASSIGN_OR_RETURN(const SmoothField polynomial,
+                          FitSmoothField(luminance, FieldModel::kPolynomial, order));
+  EYEBOX_ASSIGN_OR_RETURN(map.smooth, NormaliseAt(polynomial, reference.x_px, reference.y_px));
+  if (map.choice.splines.empty() && !options.spline_intervals) return absl::OkStatus();
+  EYEBOX_ASSIGN_OR_RETURN(const SmoothField spline,
+                          FitSmoothField(luminance, FieldModel::kSpline, intervals));
+  EYEBOX_ASSIGN_OR_RETURN(map.alternative, NormaliseAt(spline, reference.x_px, reference.y_px));
+  const bool asked_one =
+      options.polynomial_order.has_value() != options.spline_intervals.has_value();
+  const bool take_spline =
+      asked_one ? options.spline_intervals.has_value() : map.choice.spline_is_better;
+  if (take_spline) std::swap(map.smooth, *map.alternative);
+  return absl::OkStatus();
+}
+
+AreaUniformity MeasureArea(const SmoothField& smooth, const Image<float>& values,
+                           const Image<uint8_t>& mask) {
+  size_t lowest = values.pixels().size();
+  size_t highest = lowest;
+  double sum = 0, squares = 0, pixels = 0;
+  for (size_t i = 0; i < values.pixels().size(); ++i) {
+    if (mask.pixels()[i] != 0) continue;
+    const double g = values.pixels()[i];
+    if (pixels == 0 || g < values.pixels()[lowest]) lowest = i;
+    if (pixels == 0 || g > values.pixels()[highest]) highest = i;
+    sum += g;
+    squares += g * g;
+    ++pixels;
+  }
+  const auto sigma_at = [&](size_t i) {
+    const size_t width = values.size().width_px;
+    return smooth.SigmaAt(static_cast<double>(i % width), static_cast<double>(i / width));
+  };
+  AreaUniformity area;
+  area.g = {values.pixels()[lowest], values.pixels()[highest]};
+  area.minimum_sigma = sigma_at(lowest);
+  area.maximum_sigma = sigma_at(highest);
+  area.mean = sum / pixels;
+  area.deviation = std::sqrt(std::max(squares / pixels - area.mean * area.mean, 0.0));
+  area.uniformity = area.g.minimum / area.g.maximum;
+  area.uniformity_sigma =
+      std::hypot(area.minimum_sigma, area.uniformity * area.maximum_sigma) / area.g.maximum;
+  return area;
+}
+
 void CompareRawAndSmooth(UniformityMap& map) {
   const Image<float> smooth = map.smooth.Values();
+  map.area = MeasureArea(map.smooth, smooth, map.raw.mask);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   map.raw_range = map.smooth_range = {kInfinity, -kInfinity};
   const auto extend = [](FieldRange& range, double g) {
@@ -105,9 +159,7 @@ absl::StatusOr<UniformityMap> MeasureUniformity(const LuminanceImage& full_field
   map.reference_luminance = reference.value;
   map.reference_luminance_sigma = reference.sigma;
   map.raw = RatioToReference(luminance, disk, reference);
-  EYEBOX_ASSIGN_OR_RETURN(const SmoothField field,
-                          FitSmoothField(luminance, options.polynomial_order));
-  EYEBOX_ASSIGN_OR_RETURN(map.smooth, NormaliseAt(field, disk.centre.x_px, disk.centre.y_px));
+  EYEBOX_RETURN_IF_ERROR(FitSmoothModels(luminance, options, disk.centre, map));
   CompareRawAndSmooth(map);
   const double patch_px =
       std::max(options.patch_radius_fraction *

@@ -8,6 +8,7 @@
 #include "absl/status/statusor.h"
 #include "optics/geometry/pixel_point.h"
 #include "optics/photometry/luminance_image.h"
+#include "optics/uniformity/cross_validate.h"
 #include "optics/uniformity/point_uniformity.h"
 #include "optics/uniformity/smooth_field.h"
 
@@ -17,7 +18,9 @@ struct UniformityOptions {
   std::optional<PixelPoint> reference;      // image centre unless given
   double reference_radius_fraction = 0.02;  // of the smaller side of the image
   double patch_radius_fraction = 0.02;      // of the 9- and 13-point patches, likewise
-  int polynomial_order = 4;                 // total degree of the smooth model
+  // Of the smooth models; those that predict best (see cross_validate.h) unless given.
+  std::optional<int> polynomial_order;
+  std::optional<int> spline_intervals;
 };
 
 struct FieldRange {
@@ -25,21 +28,37 @@ struct FieldRange {
   double maximum = 0;
 };
 
+// Over all valid pixels of the smooth model, in the style of the IDMS (area uniformity): a single
+// pixel's noise would set the extremes of the raw map.
+struct AreaUniformity {
+  FieldRange g;
+  double minimum_sigma = 0;
+  double maximum_sigma = 0;
+  double mean = 0;
+  double deviation = 0;         // standard deviation over the field
+  double uniformity = 0;        // minimum / maximum
+  double uniformity_sigma = 0;  // from the sigmas of both, as if independent
+};
+
 struct UniformityMap {
   PixelPoint reference;
-  double reference_luminance = 0;        // mean over the reference disk, unit of the input
-  double reference_luminance_sigma = 0;  // of noise; the scale's is common and cancels in g
-  MeasuredImage raw;                     // g = L(x) / L(reference), unit "1"
-  SmoothField smooth;                    // 1 at the reference point
-  FieldRange raw_range;                  // over valid pixels
-  FieldRange smooth_range;               // over valid pixels
-  double residual_rms = 0;               // raw - smooth
-  double residual_rms_expected = 0;      // what the noise of raw alone would leave
+  double reference_luminance = 0;          // mean over the reference disk, unit of the input
+  double reference_luminance_sigma = 0;    // of noise; the scale's is common and cancels in g
+  MeasuredImage raw;                       // g = L(x) / L(reference), unit "1"
+  FieldChoice choice;                      // how the smooth models were chosen
+  SmoothField smooth;                      // 1 at the reference point: the one that predicts better
+  std::optional<SmoothField> alternative;  // likewise, of the other kind, where it is determined
+  AreaUniformity area;
+  FieldRange raw_range;              // over valid pixels
+  FieldRange smooth_range;           // over valid pixels
+  double residual_rms = 0;           // raw - smooth
+  double residual_rms_expected = 0;  // what the noise of raw alone would leave
   PointUniformity nine_points;
   PointUniformity thirteen_points;
 };
 
-// Errors: InvalidArgument (reference outside the image, order outside 0 to 8), FailedPrecondition
+// Errors: InvalidArgument (reference outside the image; order or intervals out of range),
+// FailedPrecondition
 // (no valid pixel in the reference disk or a patch, its luminance is not above 0 by 5 sigma, fewer
 // valid pixels than coefficients).
 absl::StatusOr<UniformityMap> MeasureUniformity(const LuminanceImage& full_field,

@@ -1,0 +1,125 @@
+#include "optics/uniformity/cross_validate.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <optional>
+
+#include "absl/strings/str_cat.h"
+#include "capture/base/status.h"
+#include "optics/uniformity/normal_equations.h"
+
+namespace eyebox::optics {
+namespace {
+
+constexpr int kFolds = 5;
+constexpr int kLongestSide = 384;
+constexpr double kLeastCondition = 1e-13;
+constexpr int kIntervals[] = {1, 2, 3, 4, 6, 8, 12, 16};
+
+// Prediction of each class from the others, of the first `terms` functions; nullopt where they do
+// not determine it.
+std::optional<double> HeldOutChi2(const std::vector<NormalEquations>& folds,
+                                  const NormalEquations& all, Eigen::Index terms) {
+  double chi2 = 0;
+  for (const NormalEquations& fold : folds) {
+    NormalEquations rest = all;
+    rest -= fold;
+    if (rest.pixels < static_cast<size_t>(terms)) return std::nullopt;
+    const Eigen::LDLT<Eigen::MatrixXd> factors(rest.matrix.topLeftCorner(terms, terms));
+    if (factors.info() != Eigen::Success || !factors.isPositive() ||
+        factors.rcond() < kLeastCondition) {
+      return std::nullopt;
+    }
+    chi2 += std::max(fold.Chi2(factors.solve(rest.right_side.head(terms))), 0.0);
+  }
+  return chi2 / static_cast<double>(all.pixels);
+}
+
+NormalEquations SumOf(const std::vector<NormalEquations>& folds) {
+  NormalEquations all = folds.front();
+  for (size_t k = 1; k < folds.size(); ++k) all += folds[k];
+  return all;
+}
+
+const CrossValidated& BestOf(const std::vector<CrossValidated>& models) {
+  return *std::ranges::min_element(models, {}, &CrossValidated::held_out_chi2);
+}
+
+// All orders from one pass: the functions of a lower order come first.
+std::vector<CrossValidated> ValidatePolynomials(const MeasuredImage& image) {
+  const FieldBasis basis(FieldModel::kPolynomial, kLargestOrder, image.size());
+  const auto folds = SumImage(image, basis, kFolds);
+  const NormalEquations all = SumOf(folds);
+  std::vector<CrossValidated> models;
+  for (int order = 0; order <= kLargestOrder; ++order) {
+    const auto terms = static_cast<Eigen::Index>(
+        FieldBasis(FieldModel::kPolynomial, order, image.size()).Terms().size());
+    const auto chi2 = HeldOutChi2(folds, all, terms);
+    if (!chi2) break;
+    models.push_back({FieldModel::kPolynomial, order, *chi2});
+  }
+  return models;
+}
+
+std::vector<CrossValidated> ValidateSplines(const MeasuredImage& image) {
+  std::vector<CrossValidated> models;
+  for (const int intervals : kIntervals) {
+    const FieldBasis basis(FieldModel::kSpline, intervals, image.size());
+    const auto folds = SumImage(image, basis, kFolds);
+    const auto chi2 =
+        HeldOutChi2(folds, SumOf(folds), static_cast<Eigen::Index>(basis.Terms().size()));
+    if (!chi2) break;
+    models.push_back({FieldModel::kSpline, intervals, *chi2});
+  }
+  return models;
+}
+
+}  // namespace
+
+absl::StatusOr<FieldChoice> CrossValidate(const MeasuredImage& image) {
+  const int longest = std::max(image.size().width_px, image.size().height_px);
+  const MeasuredImage binned = Binned(image, (longest + kLongestSide - 1) / kLongestSide);
+  FieldChoice choice;
+  choice.polynomials = ValidatePolynomials(binned);
+  if (choice.polynomials.empty()) {
+    return Rejected("smooth field", "too few valid pixels for any model",
+                    "record exposures with more valid pixels");
+  }
+  choice.splines = ValidateSplines(binned);
+  choice.polynomial = BestOf(choice.polynomials);
+  if (choice.splines.empty()) return choice;
+  choice.spline = BestOf(choice.splines);
+  choice.spline_is_better = choice.spline.held_out_chi2 < choice.polynomial.held_out_chi2;
+  return choice;
+}
+
+MeasuredImage Binned(const MeasuredImage& image, int block_px) {
+  if (block_px <= 1) return image;
+  const auto [width, height] = image.size();
+  MeasuredImage binned = MakeMeasuredImage(
+      {(width + block_px - 1) / block_px, (height + block_px - 1) / block_px}, image.unit);
+  Image<int> count(binned.size(), 0);
+  Image<double> sum(binned.size(), 0.0);
+  Image<double> variance(binned.size(), 0.0);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      if (image.mask.at(x, y) != 0) continue;
+      ++count.at(x / block_px, y / block_px);
+      sum.at(x / block_px, y / block_px) += image.value.at(x, y);
+      variance.at(x / block_px, y / block_px) += image.variance.at(x, y);
+    }
+  }
+  for (size_t i = 0; i < count.pixels().size(); ++i) {
+    const double n = count.pixels()[i];
+    if (n == 0) {
+      binned.mask.pixels()[i] = kNoData;
+      continue;
+    }
+    binned.value.pixels()[i] = static_cast<float>(sum.pixels()[i] / n);
+    binned.variance.pixels()[i] = static_cast<float>(variance.pixels()[i] / (n * n));
+  }
+  BlankMaskedPixels(binned);
+  return binned;
+}
+
+}  // namespace eyebox::optics

@@ -1,0 +1,34 @@
+// Sums over an image from which every least-squares fit of a field basis follows.
+#ifndef EYEBOX_OPTICS_UNIFORMITY_NORMAL_EQUATIONS_H_
+#define EYEBOX_OPTICS_UNIFORMITY_NORMAL_EQUATIONS_H_
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "optics/reduce/measured_image.h"
+#include "optics/uniformity/field_basis.h"
+
+namespace eyebox::optics {
+
+// Over valid pixels, each with the weight 1/variance.
+struct NormalEquations {
+  Eigen::MatrixXd matrix;      // sum of w basis_i basis_j
+  Eigen::VectorXd right_side;  // sum of w value basis_i
+  double squares = 0;          // sum of w value^2
+  size_t pixels = 0;
+
+  NormalEquations& operator+=(const NormalEquations& other);
+  NormalEquations& operator-=(const NormalEquations& other);
+  // Sum of w (value - model)^2 of the first coefficients of the basis.
+  double Chi2(const Eigen::VectorXd& coefficients) const;
+};
+
+// One for each of `folds` classes of pixels that are spread evenly over the image; their sum is
+// that of all pixels.
+std::vector<NormalEquations> SumImage(const MeasuredImage& image, const FieldBasis& basis,
+                                      int folds);
+
+}  // namespace eyebox::optics
+
+#endif  // EYEBOX_OPTICS_UNIFORMITY_NORMAL_EQUATIONS_H_

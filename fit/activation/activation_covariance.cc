@@ -10,44 +10,82 @@ namespace {
 // Smallest over largest singular value of the Jacobian with columns of length 1: below this the
 // sigmas would be rounding errors.
 constexpr double kSmallestSingular = 1e-9;
+constexpr int kCutoff = 2;
+constexpr int kGamma = 3;
 
-// [readings, free parameters], in the order L0, L1, (v0,) gamma.
-Eigen::MatrixXd WeightedJacobian(const ActivationProblem& problem, const Activation& activation,
-                                 const std::vector<int>& free) {
-  Eigen::MatrixXd jacobian(problem.readings.size(), free.size());
+// [readings, parameters], of the weighted readings.
+Eigen::MatrixXd WeightedJacobian(const ActivationProblem& problem, ActivationModel model,
+                                 const Activation& activation, const std::vector<int>& columns) {
+  Eigen::MatrixXd jacobian(problem.readings.size(), columns.size());
   for (Eigen::Index row = 0; row < jacobian.rows(); ++row) {
     const WeightedReading& reading = problem.readings[row];
-    const std::array<double, 4> gradient = activation.LuminanceGradient(reading.drive);
+    const std::vector<double> gradient = ParameterGradient(model, activation, reading.drive);
     for (Eigen::Index k = 0; k < jacobian.cols(); ++k) {
-      jacobian(row, k) = reading.root_weight * gradient[free[k]];
+      jacobian(row, k) = reading.root_weight * gradient[columns[k]];
     }
   }
   return jacobian;
 }
 
-}  // namespace
-
-absl::StatusOr<std::array<double, 16>> ActivationCovariance(const ActivationProblem& problem,
-                                                            const Activation& activation) {
-  std::vector<int> free = {0, 1, 2, 3};
-  if (problem.model == ActivationModel::kPowerOffset) free = {0, 1, 3};
-  Eigen::MatrixXd jacobian = WeightedJacobian(problem, activation, free);
+// How the parameters follow the weighted readings, [parameters, readings].
+absl::StatusOr<Eigen::MatrixXd> PseudoInverse(Eigen::MatrixXd jacobian, ActivationModel model) {
   const Eigen::VectorXd lengths = jacobian.colwise().norm();
   const absl::Status undetermined =
-      Rejected(NameOf(problem.model), "the readings do not determine its parameters",
+      Rejected(NameOf(model), "the readings do not determine its parameters",
                "measure more levels, above all where the luminance begins to rise");
   if (!(lengths.minCoeff() > 0) || !lengths.allFinite()) return undetermined;
   jacobian.array().rowwise() /= lengths.transpose().array();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(jacobian, Eigen::ComputeThinV);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(jacobian, Eigen::ComputeThinU | Eigen::ComputeThinV);
   const Eigen::VectorXd& singular = svd.singularValues();
   if (!(singular.minCoeff() > kSmallestSingular * singular.maxCoeff())) return undetermined;
-  const Eigen::MatrixXd half =
-      lengths.cwiseInverse().asDiagonal() * svd.matrixV() * singular.cwiseInverse().asDiagonal();
-  const Eigen::MatrixXd inverse = half * half.transpose();
-  std::array<double, 16> covariance{};
-  for (Eigen::Index i = 0; i < inverse.rows(); ++i) {
-    for (Eigen::Index j = 0; j < inverse.cols(); ++j) {
-      covariance[4 * free[i] + free[j]] = inverse(i, j);
+  return Eigen::MatrixXd(lengths.cwiseInverse().asDiagonal() * svd.matrixV() *
+                         singular.cwiseInverse().asDiagonal() * svd.matrixU().transpose());
+}
+
+// The second stage sees the readings less what the first one's v0 and gamma make of them.
+absl::StatusOr<Eigen::MatrixXd> SplineResponse(const ActivationProblem& problem,
+                                               const ActivationSolution& solution,
+                                               const std::vector<int>& free) {
+  EYEBOX_ASSIGN_OR_RETURN(
+      const Eigen::MatrixXd first,
+      PseudoInverse(WeightedJacobian(problem, ActivationModel::kGammaWithCutoff, solution.gamma_fit,
+                                     {0, 1, kCutoff, kGamma}),
+                    problem.model));
+  std::vector<int> second_stage;
+  for (const int parameter : free) {
+    if (parameter != kCutoff && parameter != kGamma) second_stage.push_back(parameter);
+  }
+  const auto jacobian = [&](const std::vector<int>& columns) {
+    return WeightedJacobian(problem, problem.model, solution.activation, columns);
+  };
+  EYEBOX_ASSIGN_OR_RETURN(const Eigen::MatrixXd second,
+                          PseudoInverse(jacobian(second_stage), problem.model));
+  const auto readings = static_cast<Eigen::Index>(problem.readings.size());
+  const Eigen::MatrixXd held = first.middleRows(kCutoff, 2);
+  const Eigen::MatrixXd fitted =
+      second * (Eigen::MatrixXd::Identity(readings, readings) - jacobian({kCutoff, kGamma}) * held);
+  Eigen::MatrixXd response(fitted.rows() + 2, readings);
+  response << fitted.topRows(2), held, fitted.bottomRows(fitted.rows() - 2);
+  return response;
+}
+
+}  // namespace
+
+absl::StatusOr<std::vector<double>> ActivationCovariance(const ActivationProblem& problem,
+                                                         const ActivationSolution& solution) {
+  const std::vector<int> free = FreeParameters(problem.model, solution.activation);
+  EYEBOX_ASSIGN_OR_RETURN(
+      const Eigen::MatrixXd response,
+      problem.model == ActivationModel::kMonotoneSpline
+          ? SplineResponse(problem, solution, free)
+          : PseudoInverse(WeightedJacobian(problem, problem.model, solution.activation, free),
+                          problem.model));
+  const Eigen::MatrixXd among_free = response * response.transpose();
+  const size_t count = static_cast<size_t>(free.back()) + 1;
+  std::vector<double> covariance(count * count, 0.0);
+  for (Eigen::Index i = 0; i < among_free.rows(); ++i) {
+    for (Eigen::Index j = 0; j < among_free.cols(); ++j) {
+      covariance[count * free[i] + free[j]] = among_free(i, j);
     }
   }
   return covariance;

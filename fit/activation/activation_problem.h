@@ -2,7 +2,6 @@
 #ifndef EYEBOX_FIT_ACTIVATION_ACTIVATION_PROBLEM_H_
 #define EYEBOX_FIT_ACTIVATION_ACTIVATION_PROBLEM_H_
 
-#include <array>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,34 +25,62 @@ struct ActivationProblem {
   ActivationModel model = ActivationModel::kGammaWithCutoff;
   std::vector<WeightedReading> readings;  // ascending drive
 
-  int ParameterCount() const { return model == ActivationModel::kPowerOffset ? 3 : 4; }
+  size_t FewestDrives() const;         // different ones that the model needs, for leave-one-out too
   std::vector<double> Drives() const;  // ascending, each once
   double SumOfSquares(const Activation& activation) const;
+  // All readings but those at the given drives.
+  ActivationProblem Without(std::span<const double> drives) const;
 };
 
 struct ActivationSolution {
   Activation activation;
+  Activation gamma_fit;  // a spline's first stage, which holds its v0 and gamma; else `activation`
   double sum_of_squares = 0;
   std::string termination;  // why the solver stopped and which parameter ended at a bound
 };
 
-// A spread of gamma and cutoff, each with the best L0 >= 0 and L1 > 0 for it.
+// dL/d(parameter) at `drive`, in the order of ActivationFit::parameters; 0 for those that the model
+// holds.
+std::vector<double> ParameterGradient(ActivationModel model, const Activation& activation,
+                                      double drive);
+// Places in that order of the parameters that the model leaves free.
+std::vector<int> FreeParameters(ActivationModel model, const Activation& activation);
+
+// A spread of gamma, cutoff and toe, each with the best L0 >= 0 and L1 > 0 for it.
 std::vector<Activation> StartingPoints(const ActivationProblem& problem);
 
-// The best optimum reached from any of `starts`, under L0 >= 0, L1 > 0, v0 >= 0, gamma within its
-// limits. Errors: FailedPrecondition (converged from none of them).
+// The best optimum reached from any of `starts`, under L0 >= 0, L1 > 0, v0 >= 0, toe >= 0, gamma
+// within its limits; of a spline's problem, the gamma fit with cutoff that it starts from.
+// Errors: FailedPrecondition (converged from none of them).
 absl::StatusOr<ActivationSolution> SolveActivation(const ActivationProblem& problem,
                                                    std::span<const Activation> starts);
 
-// (J^T W J)^-1 of the parameters (L0, L1, v0, gamma), [4, 4] row-major, zeros for a held v0. A
-// parameter that ended at its bound counts as free: its sigma says how far the readings alone would
-// let it leave the bound, and the others carry their share of that.
+// The spline of `knots` knots on what `gamma_fit` leaves: its v0 and gamma are held, L0, L1 and the
+// slopes are fitted. Errors: FailedPrecondition (it did not converge).
+absl::StatusOr<ActivationSolution> SolveSpline(const ActivationProblem& problem,
+                                               const Activation& gamma_fit, int knots);
+
+// The number of knots that predicts drives left out best; gamma is fitted anew without them.
+// Errors: those of SolveActivation and SolveSpline.
+absl::StatusOr<int> ChooseKnotCount(const ActivationProblem& problem, const Activation& gamma_fit,
+                                    double floor);
+
+// The whole procedure of the model: for a spline the gamma fit, the choice of knots, the spline.
+// Leave-one-out repeats all of it, so that its error knows nothing of the reading left out.
+// Errors: those of the parts.
+absl::StatusOr<ActivationSolution> SolveModel(const ActivationProblem& problem,
+                                              std::span<const Activation> starts, double floor);
+
+// Covariance of the parameters, [parameters, parameters] row-major, zeros for one that is held, for
+// readings whose sigma is 1 / root_weight. Of the two stages of a spline, each passes its readings'
+// errors on to the other. A parameter that ended at its bound counts as free: its sigma says how
+// far the readings alone would let it leave the bound, and the others carry their share of that.
 // Errors: FailedPrecondition (the readings do not determine the parameters).
-absl::StatusOr<std::array<double, 16>> ActivationCovariance(const ActivationProblem& problem,
-                                                            const Activation& activation);
+absl::StatusOr<std::vector<double>> ActivationCovariance(const ActivationProblem& problem,
+                                                         const ActivationSolution& solution);
 
 // Rms over the interior drives of (predicted - measured) / max(measured, floor), each predicted
-// from a fit without any reading at that drive. Errors: those of SolveActivation.
+// from a fit without any reading at that drive. Errors: those of SolveModel.
 absl::StatusOr<double> LeaveOneOutError(const ActivationProblem& problem, const Activation& fitted,
                                         double floor);
 

@@ -14,8 +14,9 @@ namespace {
 constexpr double kClearlyWorse = 1.05;
 constexpr double kSameError = 1e-9;
 
-constexpr ActivationModel kSimplestFirst[] = {ActivationModel::kPowerOffset,
-                                              ActivationModel::kGammaWithCutoff};
+constexpr ActivationModel kSimplestFirst[] = {
+    ActivationModel::kPowerOffset, ActivationModel::kGammaWithCutoff, ActivationModel::kSrgbLike,
+    ActivationModel::kMonotoneSpline};
 
 bool PredictsBetter(const ActivationFit& candidate, const ActivationFit& simpler) {
   return candidate.leave_one_out_rms_relative * kClearlyWorse + kSameError <
@@ -65,6 +66,18 @@ absl::StatusOr<ActivationChoice> ChooseActivation(const LevelSeries& series,
   if (choice.tried.empty()) return *first_failure;
   choice.reason = Reason(choice, failures);
   return choice;
+}
+
+std::vector<ComparedActivation> CompareActivations(const LevelSeries& series) {
+  std::vector<Weighting> weightings = {Weighting::kRelative, Weighting::kUnweighted};
+  if (series.HasSigmas()) weightings.insert(weightings.begin(), Weighting::kMeasuredSigma);
+  std::vector<ComparedActivation> compared;
+  for (const Weighting weighting : weightings) {
+    for (const ActivationModel model : kSimplestFirst) {
+      compared.push_back({model, weighting, FitActivation(series, model, weighting)});
+    }
+  }
+  return compared;
 }
 
 }  // namespace eyebox::fit

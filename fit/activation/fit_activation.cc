@@ -47,12 +47,11 @@ absl::StatusOr<ActivationProblem> Pose(const LevelSeries& series, ActivationMode
         {reading.drive, reading.luminance, RootWeight(reading, weighting, RelativeFloor(series))});
   }
   const size_t drives = problem.Drives().size();
-  if (drives <= static_cast<size_t>(problem.ParameterCount())) {
-    return Rejected(
-        series.source,
-        absl::StrCat(std::string(NameOf(model)), " has ", problem.ParameterCount(),
-                     " parameters, and the series only ", drives, " different drive values"),
-        "measure more levels");
+  if (drives < problem.FewestDrives()) {
+    return Rejected(series.source,
+                    absl::StrCat(std::string(NameOf(model)), " needs ", problem.FewestDrives(),
+                                 " different drive values, and the series has only ", drives),
+                    "measure more levels");
   }
   return problem;
 }
@@ -84,20 +83,35 @@ void ScaleCovariance(const LevelSeries& series, ActivationFit& fit) {
   for (double& element : fit.covariance) element *= scale;
   const double luminances[] = {fit.activation.minimum_luminance, fit.activation.luminance_range};
   const double scale_variance = series.scale_relative_sigma * series.scale_relative_sigma;
+  const size_t count = fit.parameters.size();
   for (int i = 0; i < 2; ++i) {
     for (int j = 0; j < 2; ++j) {
-      fit.covariance[4 * i + j] += scale_variance * luminances[i] * luminances[j];
+      fit.covariance[count * i + j] += scale_variance * luminances[i] * luminances[j];
     }
   }
 }
 
 void ListParameters(const LevelSeries& series, ActivationFit& fit) {
   const Activation& a = fit.activation;
-  fit.parameters = {{{"minimum_luminance", a.minimum_luminance, 0, series.luminance_unit},
-                     {"luminance_range", a.luminance_range, 0, series.luminance_unit},
-                     {"cutoff_drive", a.cutoff_drive, 0, "1"},
-                     {"gamma", a.gamma, 0, "1"}}};
-  for (int i = 0; i < 4; ++i) fit.parameters[i].sigma = std::sqrt(fit.covariance[5 * i]);
+  fit.parameters = {{"minimum_luminance", a.minimum_luminance, 0, series.luminance_unit},
+                    {"luminance_range", a.luminance_range, 0, series.luminance_unit},
+                    {"cutoff_drive", a.cutoff_drive, 0, "1"},
+                    {"gamma", a.gamma, 0, "1"}};
+  if (fit.model == ActivationModel::kSrgbLike) {
+    fit.parameters.push_back({"toe_drive", a.toe_drive, 0, "1"});
+  }
+  const std::vector<MonotoneWarp::Knot>& knots = a.warp.Knots();
+  for (size_t i = 0; i + 1 < knots.size(); ++i) {
+    fit.parameters.push_back({absl::StrCat("spline_log_slope_", i + 1),
+                              std::log(knots[i].slope / knots.back().slope), 0, "1"});
+  }
+}
+
+void SetSigmas(ActivationFit& fit) {
+  const size_t count = fit.parameters.size();
+  for (size_t i = 0; i < count; ++i) {
+    fit.parameters[i].sigma = std::sqrt(fit.covariance[(count + 1) * i]);
+  }
 }
 
 void ListLevels(const LevelSeries& series, ActivationFit& fit) {
@@ -116,7 +130,17 @@ void ListLevels(const LevelSeries& series, ActivationFit& fit) {
 }  // namespace
 
 std::string_view NameOf(ActivationModel model) {
-  return model == ActivationModel::kPowerOffset ? "power_offset" : "gamma_with_cutoff";
+  switch (model) {
+    case ActivationModel::kPowerOffset:
+      return "power_offset";
+    case ActivationModel::kSrgbLike:
+      return "srgb_like";
+    case ActivationModel::kMonotoneSpline:
+      return "monotone_spline";
+    case ActivationModel::kGammaWithCutoff:
+      break;
+  }
+  return "gamma_with_cutoff";
 }
 
 std::string_view NameOf(Weighting weighting) {
@@ -127,24 +151,39 @@ std::string_view NameOf(Weighting weighting) {
 absl::StatusOr<ActivationFit> FitActivation(const LevelSeries& series, ActivationModel model,
                                             Weighting weighting) {
   EYEBOX_ASSIGN_OR_RETURN(const ActivationProblem problem, Pose(series, model, weighting));
+  const double floor = RelativeFloor(series);
   EYEBOX_ASSIGN_OR_RETURN(ActivationSolution solution,
-                          SolveActivation(problem, StartingPoints(problem)));
+                          SolveModel(problem, StartingPoints(problem), floor));
   EYEBOX_RETURN_IF_ERROR(CheckExponent(series, solution));
   ActivationFit fit;
   fit.activation = solution.activation;
   fit.model = model;
   fit.weighting = weighting;
-  fit.termination = std::move(solution.termination);
+  fit.termination = solution.termination;
   fit.chi_square = solution.sum_of_squares;
-  fit.degrees_of_freedom = static_cast<int>(series.readings.size()) - problem.ParameterCount();
-  EYEBOX_ASSIGN_OR_RETURN(fit.covariance, ActivationCovariance(problem, fit.activation));
-  ScaleCovariance(series, fit);
+  const auto free = static_cast<int>(FreeParameters(model, fit.activation).size());
+  fit.degrees_of_freedom = static_cast<int>(series.readings.size()) - free;
+  EYEBOX_ASSIGN_OR_RETURN(fit.covariance, ActivationCovariance(problem, solution));
   ListParameters(series, fit);
+  ScaleCovariance(series, fit);
+  SetSigmas(fit);
   ListLevels(series, fit);
-  fit.aicc = Aicc(fit, problem.ParameterCount());
+  fit.aicc = Aicc(fit, free);
   EYEBOX_ASSIGN_OR_RETURN(fit.leave_one_out_rms_relative,
-                          LeaveOneOutError(problem, fit.activation, RelativeFloor(series)));
+                          LeaveOneOutError(problem, solution.gamma_fit, floor));
   return fit;
+}
+
+double LuminanceSigma(const ActivationFit& fit, double drive) {
+  const std::vector<double> gradient = ParameterGradient(fit.model, fit.activation, drive);
+  const size_t count = gradient.size();
+  double variance = 0;
+  for (size_t i = 0; i < count; ++i) {
+    for (size_t j = 0; j < count; ++j) {
+      variance += gradient[i] * fit.covariance[count * i + j] * gradient[j];
+    }
+  }
+  return std::sqrt(std::max(variance, 0.0));
 }
 
 }  // namespace eyebox::fit

@@ -2,7 +2,6 @@
 #ifndef EYEBOX_FIT_ACTIVATION_FIT_ACTIVATION_H_
 #define EYEBOX_FIT_ACTIVATION_FIT_ACTIVATION_H_
 
-#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,8 +17,12 @@ namespace eyebox::fit {
 enum class ActivationModel {
   kPowerOffset,      // L = L0 + L1 v^gamma, v0 held at 0
   kGammaWithCutoff,  // L = L0 + L1 max((v - v0) / (1 - v0), 0)^gamma, v0 >= 0
+  kSrgbLike,         // a straight toe, then a power, C1 between them; v0 held at 0 (ToePower)
+  kMonotoneSpline,  // gamma with cutoff of a warped drive, see MonotoneWarp; the number of knots by
+                    // cross-validation
 };
-std::string_view NameOf(ActivationModel model);  // "power_offset", "gamma_with_cutoff"
+// "power_offset", "gamma_with_cutoff", "srgb_like", "monotone_spline".
+std::string_view NameOf(ActivationModel model);
 
 enum class Weighting {
   kMeasuredSigma,  // 1 / sigma^2 of each reading
@@ -38,14 +41,16 @@ struct ActivationFit {
   Activation activation;
   ActivationModel model = ActivationModel::kGammaWithCutoff;
   Weighting weighting = Weighting::kRelative;
-  // minimum_luminance (L0), luminance_range (L1), cutoff_drive (v0), gamma: always these four.
-  std::array<Parameter, 4> parameters;
-  // [4, 4] row-major, in the order of `parameters`; zero rows for a parameter that was held.
+  // minimum_luminance (L0), luminance_range (L1), cutoff_drive (v0), gamma: always these four
+  // first; then toe_drive of srgb_like, or spline_log_slope_1, ... of monotone_spline: ln of the
+  // slope of the warp at each knot but the last over the slope there.
+  std::vector<Parameter> parameters;
+  // [parameters, parameters] row-major, in their order; zero rows for a parameter that was held.
   // With measured sigmas these are absolute, unless reduced chi-square is above 1: then scaled by
   // it. With other weightings the scale is estimated from the residuals. The series' scale
   // uncertainty is added to L0 and L1. A parameter that ended at its bound (L0 = 0, v0 = 0; the
   // termination says so) keeps the sigma it would have if the bound were not there.
-  std::array<double, 16> covariance{};
+  std::vector<double> covariance;
   std::vector<FittedLevel> levels;
   double rms_relative = 0;  // over all readings, of (fitted - measured) / max(measured, floor)
   double leave_one_out_rms_relative = 0;  // interior levels, each predicted without any
@@ -57,10 +62,15 @@ struct ActivationFit {
 };
 
 // Errors: those of LevelSeries::Validate(); InvalidArgument (kMeasuredSigma without sigmas);
-// FailedPrecondition (fewer different drives than parameters + 1, gamma at its limits of 0.3 and 8,
-// parameters that the readings do not determine, no convergence: says what was tried).
+// FailedPrecondition (fewer different drives than parameters + 1, for a spline 8; gamma at its
+// limits of 0.3 and 8, parameters that the readings do not determine, no convergence: says what was
+// tried).
 absl::StatusOr<ActivationFit> FitActivation(const LevelSeries& series, ActivationModel model,
                                             Weighting weighting);
+
+// Standard uncertainty of the fitted L at `drive`, from the covariance of the parameters: the band
+// of a prediction, without the noise of a new reading. Finite for every drive.
+double LuminanceSigma(const ActivationFit& fit, double drive);
 
 struct ActivationChoice {
   ActivationFit best;
@@ -77,6 +87,17 @@ struct ActivationOptions {
 // Errors: those of FitActivation.
 absl::StatusOr<ActivationChoice> ChooseActivation(const LevelSeries& series,
                                                   const ActivationOptions& options = {});
+
+// One line of the table of all models under all weightings.
+struct ComparedActivation {
+  ActivationModel model = ActivationModel::kPowerOffset;
+  Weighting weighting = Weighting::kRelative;
+  absl::StatusOr<ActivationFit> fit;
+};
+
+// Every model under every weighting that the series allows, for comparison: AICc compares within
+// one weighting only.
+std::vector<ComparedActivation> CompareActivations(const LevelSeries& series);
 
 }  // namespace eyebox::fit
 

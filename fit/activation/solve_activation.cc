@@ -14,9 +14,13 @@
 namespace eyebox::fit {
 namespace {
 
-// Residual root_weight (L(v; L0, L1, v0, gamma) - reading), [1]; parameter blocks L0, L1, v0 and
-// gamma, [1] each, so that any of them can be held.
-struct LevelResidual final : ceres::SizedCostFunction<1, 1, 1, 1, 1> {
+enum Block { kMinimum, kRange, kCutoff, kGamma, kToe, kBlocks };
+constexpr const char* kBlockNames[] = {"minimum_luminance", "luminance_range", "cutoff_drive",
+                                       "gamma", "toe_drive"};
+
+// Residual root_weight (L(v; L0, L1, v0, gamma, toe) - reading), [1]; parameter blocks L0, L1, v0,
+// gamma and toe, [1] each, so that any of them can be held.
+struct LevelResidual final : ceres::SizedCostFunction<1, 1, 1, 1, 1, 1> {
   explicit LevelResidual(const WeightedReading& weighted_reading) : reading(weighted_reading) {}
 
   // The caller owns it, as ceres::Problem expects.
@@ -26,12 +30,16 @@ struct LevelResidual final : ceres::SizedCostFunction<1, 1, 1, 1, 1> {
 
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override {
-    const Activation activation{*parameters[0], *parameters[1], *parameters[2], *parameters[3]};
+    const Activation activation{*parameters[kMinimum], *parameters[kRange], *parameters[kCutoff],
+                                *parameters[kGamma], *parameters[kToe]};
     residuals[0] = reading.root_weight * (activation.Luminance(reading.drive) - reading.luminance);
     if (jacobians == nullptr) return true;
     const std::array<double, 4> gradient = activation.LuminanceGradient(reading.drive);
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < kToe; ++i) {
       if (jacobians[i] != nullptr) jacobians[i][0] = reading.root_weight * gradient[i];
+    }
+    if (jacobians[kToe] != nullptr) {
+      jacobians[kToe][0] = reading.root_weight * activation.LuminanceByToe(reading.drive);
     }
     return true;
   }
@@ -39,11 +47,9 @@ struct LevelResidual final : ceres::SizedCostFunction<1, 1, 1, 1, 1> {
   const WeightedReading reading;
 };
 
-enum Block { kMinimum, kRange, kCutoff, kGamma };
-constexpr const char* kBlockNames[] = {"minimum_luminance", "luminance_range", "cutoff_drive",
-                                       "gamma"};
 constexpr int kDrivesAboveCutoff = 2;    // fewer would leave range and gamma to one reading
 constexpr double kSmallestRange = 1e-9;  // of white
+constexpr double kLargestToe = 0.9;      // nearer to white little is left to tell the power by
 constexpr double kAtBound = 1e-9;        // closer than this, a parameter is called at its bound
 
 struct Bounds {
@@ -67,10 +73,11 @@ Scale ScaleOf(const ActivationProblem& problem) {
   return scale;
 }
 
-std::array<Bounds, 4> BoundsOf(const ActivationProblem& problem) {
+std::array<Bounds, kBlocks> BoundsOf(const ActivationProblem& problem) {
   const std::vector<double> drives = problem.Drives();
   const double last_cutoff = drives[drives.size() - 1 - kDrivesAboveCutoff];
-  return {{{0, 1}, {kSmallestRange, 1e6}, {0, last_cutoff}, {kGammaMin, kGammaMax}}};
+  return {
+      {{0, 1}, {kSmallestRange, 1e6}, {0, last_cutoff}, {kGammaMin, kGammaMax}, {0, kLargestToe}}};
 }
 
 ceres::Solver::Options SolverOptions() {
@@ -93,21 +100,24 @@ class Minimizer {
       problem_.AddResidualBlock(
           LevelResidual::Create({reading.drive, reading.luminance / scale_.luminance,
                                  reading.root_weight * scale_.luminance / scale_.root_weight}),
-          nullptr, &values_[kMinimum], &values_[kRange], &values_[kCutoff], &values_[kGamma]);
+          nullptr, &values_[kMinimum], &values_[kRange], &values_[kCutoff], &values_[kGamma],
+          &values_[kToe]);
     }
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < kBlocks; ++i) {
       problem_.SetParameterLowerBound(&values_[i], 0, bounds_[i].lower);
       problem_.SetParameterUpperBound(&values_[i], 0, bounds_[i].upper);
     }
-    if (problem.model == ActivationModel::kPowerOffset) {
+    const bool has_toe = problem.model == ActivationModel::kSrgbLike;
+    if (has_toe || problem.model == ActivationModel::kPowerOffset) {
       problem_.SetParameterBlockConstant(&values_[kCutoff]);
     }
+    if (!has_toe) problem_.SetParameterBlockConstant(&values_[kToe]);
   }
 
   ceres::Solver::Summary MinimizeFrom(const Activation& start) {
     values_ = {start.minimum_luminance / scale_.luminance, start.luminance_range / scale_.luminance,
-               start.cutoff_drive, start.gamma};
-    for (int i = 0; i < 4; ++i) {
+               start.cutoff_drive, start.gamma, start.toe_drive};
+    for (int i = 0; i < kBlocks; ++i) {
       values_[i] = std::clamp(values_[i], bounds_[i].lower, bounds_[i].upper);
     }
     ceres::Solver::Summary summary;
@@ -117,13 +127,13 @@ class Minimizer {
 
   Activation Result() const {
     return {values_[kMinimum] * scale_.luminance, values_[kRange] * scale_.luminance,
-            values_[kCutoff], values_[kGamma]};
+            values_[kCutoff], values_[kGamma], values_[kToe]};
   }
 
   // Of those that the problem leaves free.
   std::vector<std::string> AtBounds() const {
     std::vector<std::string> names;
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < kBlocks; ++i) {
       if (problem_.IsParameterBlockConstant(&values_[i])) continue;
       const double gap = std::min(values_[i] - bounds_[i].lower, bounds_[i].upper - values_[i]);
       if (gap < kAtBound) names.emplace_back(kBlockNames[i]);
@@ -133,8 +143,8 @@ class Minimizer {
 
  private:
   Scale scale_;
-  std::array<Bounds, 4> bounds_;
-  std::array<double, 4> values_{};
+  std::array<Bounds, kBlocks> bounds_;
+  std::array<double, kBlocks> values_{};
   ceres::Problem problem_;
 };
 
@@ -162,7 +172,7 @@ absl::StatusOr<ActivationSolution> SolveActivation(const ActivationProblem& prob
     const Activation activation = minimizer.Result();
     const double sum_of_squares = problem.SumOfSquares(activation);
     if (best && best->sum_of_squares <= sum_of_squares) continue;
-    best = {activation, sum_of_squares, Describe(summary, minimizer.AtBounds())};
+    best = {activation, activation, sum_of_squares, Describe(summary, minimizer.AtBounds())};
   }
   if (best) return *std::move(best);
   return Rejected(NameOf(problem.model),

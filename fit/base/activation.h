@@ -21,7 +21,7 @@ struct Activation {
   double cutoff_drive = 0;       // v0
   double gamma = 2.2;
   double toe_drive = 0;  // b, in units of x: sRGB has 0.0393 with gamma 2.4
-  MonotoneWarp warp;     // W
+  MonotoneWarp warp{};   // W
 
   // Relative error below 1e-14 (gamma up to 8), with a warp 1e-13. NaN only for a drive that is
   // NaN.

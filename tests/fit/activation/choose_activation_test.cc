@@ -14,7 +14,7 @@ TEST(ChooseActivationTest, CutoffIsTakenWhereThereIsOne) {
   ASSERT_TRUE(choice.ok()) << choice.status();
   EXPECT_EQ(choice->best.model, ActivationModel::kGammaWithCutoff);
   EXPECT_EQ(choice->best.weighting, Weighting::kMeasuredSigma);
-  EXPECT_EQ(choice->tried.size(), 2U);
+  EXPECT_EQ(choice->tried.size(), 4U);
   EXPECT_THAT(choice->reason, HasSubstr("gamma_with_cutoff was taken"));
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "capture/base/status.h"
@@ -16,7 +17,6 @@ namespace {
 
 // Beyond this the model does not follow the display.
 constexpr double kNotedLeaveOneOut = 0.02;
-constexpr int kParameters = 4;
 
 void AddLevels(const fit::ActivationFit& fit, v1::ActivationResult& result) {
   for (const fit::FittedLevel& level : fit.levels) {
@@ -26,15 +26,29 @@ void AddLevels(const fit::ActivationFit& fit, v1::ActivationResult& result) {
     residual.set_luminance_sigma(level.reading.luminance_sigma);
     residual.set_fitted(level.fitted);
     residual.set_relative_residual(level.relative_residual);
+    residual.set_fitted_sigma(fit::LuminanceSigma(fit, level.reading.drive));
+  }
+}
+
+void AddFigures(const fit::ActivationFit& fit, v1::ModelFigure& figure) {
+  figure.set_model(std::string(fit::NameOf(fit.model)));
+  figure.set_weighting(std::string(fit::NameOf(fit.weighting)));
+  figure.set_leave_one_out_rms_relative(fit.leave_one_out_rms_relative);
+  figure.set_rms_relative(fit.rms_relative);
+  figure.set_aicc(fit.aicc);
+}
+
+void AddSpline(const fit::MonotoneWarp& warp, v1::ActivationResult& result) {
+  for (const fit::MonotoneWarp::Knot& knot : warp.Knots()) {
+    v1::SplineKnot& added = *result.add_spline();
+    added.set_place(knot.x);
+    added.set_log_slope(std::log(knot.slope / warp.Knots().back().slope));
   }
 }
 
 void AddAlternatives(const fit::ActivationChoice& choice, v1::ActivationResult& result) {
   for (const fit::ActivationFit& tried : choice.tried) {
-    v1::ModelFigure& figure = *result.add_alternatives();
-    figure.set_model(std::string(fit::NameOf(tried.model)));
-    figure.set_leave_one_out_rms_relative(tried.leave_one_out_rms_relative);
-    figure.set_aicc(tried.aicc);
+    AddFigures(tried, *result.add_alternatives());
   }
   result.set_choice_reason(choice.reason);
 }
@@ -68,6 +82,37 @@ absl::StatusOr<double> ValueOf(const v1::ActivationResult& result, std::string_v
                   "give what `eyebox fit --json` prints, or activation.json");
 }
 
+// Absent in results of models without a toe.
+double ToeOf(const v1::ActivationResult& result) {
+  for (const v1::Parameter& parameter : result.parameters()) {
+    if (parameter.name() == "toe_drive") return parameter.value();
+  }
+  return 0;
+}
+
+absl::StatusOr<fit::MonotoneWarp> WarpOf(const v1::ActivationResult& result,
+                                         std::string_view where) {
+  if (result.spline().empty()) {
+    if (result.model() != fit::NameOf(fit::ActivationModel::kMonotoneSpline)) {
+      return fit::MonotoneWarp();
+    }
+    return BadInput(where, "it is a monotone_spline without knots",
+                    "give what `eyebox fit --json` prints, or activation.json");
+  }
+  std::vector<double> places;
+  std::vector<double> log_slopes;
+  for (const v1::SplineKnot& knot : result.spline()) {
+    places.push_back(knot.place());
+    log_slopes.push_back(knot.log_slope());
+  }
+  if (fit::MonotoneWarp::IsValid(places, log_slopes)) {
+    return fit::MonotoneWarp::FromLogSlopes(places, log_slopes);
+  }
+  return BadInput(absl::StrCat(std::string(where), ", spline"),
+                  "its knots do not ascend from 0 to 1, or a slope is out of range",
+                  "give what `eyebox fit --json` prints, or activation.json");
+}
+
 absl::Status OutOfRange(std::string_view where, const char* name, double value, const char* range) {
   return BadInput(where, absl::StrCat("parameter ", name, " is ", value),
                   absl::StrCat("it must be ", range));
@@ -95,6 +140,7 @@ v1::ActivationResult DescribeActivation(const fit::ActivationChoice& choice,
   result.set_luminance_unit(series.luminance_unit);
   result.set_scale_relative_sigma(series.scale_relative_sigma);
   AddAlternatives(choice, result);
+  AddSpline(fit.activation.warp, result);
   result.set_termination(fit.termination);
   result.set_source(series.source);
   AddWarnings(fit, result);
@@ -128,6 +174,20 @@ absl::StatusOr<v1::CommonExponentResult> DescribeField(const fit::CommonExponent
   return result;
 }
 
+void AddComparison(const std::vector<fit::ComparedActivation>& compared,
+                   v1::ActivationResult& result) {
+  for (const fit::ComparedActivation& entry : compared) {
+    v1::ModelFigure& figure = *result.add_comparison();
+    if (entry.fit.ok()) {
+      AddFigures(*entry.fit, figure);
+      continue;
+    }
+    figure.set_model(std::string(fit::NameOf(entry.model)));
+    figure.set_weighting(std::string(fit::NameOf(entry.weighting)));
+    figure.set_failure(std::string(entry.fit.status().message()));
+  }
+}
+
 v1::Parameter MaximumLuminance(const v1::ActivationResult& activation) {
   v1::Parameter maximum;
   maximum.set_name("maximum_luminance");
@@ -135,9 +195,10 @@ v1::Parameter MaximumLuminance(const v1::ActivationResult& activation) {
   if (activation.parameters_size() < 2) return maximum;
   maximum.set_value(activation.parameters(0).value() + activation.parameters(1).value());
   double variance = 0;
-  if (activation.covariance_size() == kParameters * kParameters) {
-    variance = activation.covariance(0) + activation.covariance(kParameters + 1) +
-               2 * activation.covariance(1);
+  const int count = activation.parameters_size();
+  if (activation.covariance_size() == count * count) {
+    variance =
+        activation.covariance(0) + activation.covariance(count + 1) + 2 * activation.covariance(1);
   }
   maximum.set_sigma(std::sqrt(std::max(variance, 0.0)));
   return maximum;
@@ -161,6 +222,11 @@ absl::StatusOr<fit::Activation> ActivationOf(const v1::ActivationResult& result,
     return OutOfRange(where, "cutoff_drive", activation.cutoff_drive, "from 0 to below 1");
   }
   if (!(activation.gamma > 0)) return OutOfRange(where, "gamma", activation.gamma, "above 0");
+  activation.toe_drive = ToeOf(result);
+  if (!(activation.toe_drive >= 0 && activation.toe_drive < 1)) {
+    return OutOfRange(where, "toe_drive", activation.toe_drive, "from 0 to below 1");
+  }
+  EYEBOX_ASSIGN_OR_RETURN(activation.warp, WarpOf(result, where));
   return activation;
 }
 

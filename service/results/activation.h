@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string_view>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "eyebox/v1/results.pb.h"
@@ -16,6 +17,10 @@ namespace eyebox::service {
 // Everything but `field`.
 v1::ActivationResult DescribeActivation(const fit::ActivationChoice& choice,
                                         const fit::LevelSeries& series);
+
+// The table of all models under all weightings, into `comparison`.
+void AddComparison(const std::vector<fit::ComparedActivation>& compared,
+                   v1::ActivationResult& result);
 
 // Writes field_k.npy, field_k_sigma.npy, field_delta.npy and field_delta_sigma.npy into `folder`
 // unless it is empty.

@@ -12,8 +12,8 @@ import tempfile
 from pathlib import Path
 
 PROTO_FOLDER = Path(__file__).resolve().parents[3] / "proto"
-_PROTOS = ("eyebox/v1/field.proto", "eyebox/v1/recording.proto", "eyebox/v1/results.proto", "eyebox/v1/service.proto",
-           "eyebox/v1/uniformity.proto")
+_PROTOS = ("eyebox/v1/field.proto", "eyebox/v1/recording.proto", "eyebox/v1/results.proto",
+           "eyebox/v1/service.proto", "eyebox/v1/uniformity.proto")
 
 
 def find(package_path):

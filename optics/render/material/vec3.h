@@ -20,7 +20,12 @@ inline double Dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y +
 inline Vec3 Cross(const Vec3& a, const Vec3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-inline double Length(const Vec3& a) { return std::hypot(a.x, a.y, a.z); }
+inline double Length(const Vec3& a) {
+  const double square = Dot(a, a);
+  // The square of what is very small or large leaves the range of doubles.
+  if (square > 1e-280 && square < 1e280) return std::sqrt(square);
+  return std::hypot(a.x, a.y, a.z);
+}
 
 // `a` must not be of length 0.
 inline Vec3 Normalised(const Vec3& a) { return (1 / Length(a)) * a; }

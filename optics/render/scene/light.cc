@@ -52,15 +52,23 @@ Arrival ArrivalAt(const PointLight& light, const Vec3& position_m) {
   return {(1 / distance_m) * to, (light.intensity_cd * fall) * light.colour};
 }
 
-Arrival ArrivalAt(const SpotLight& light, const Vec3& position_m) {
+SpotCone ConeOf(const SpotLight& light) {
+  return {light.source, light.axis, HalfAngleCap(light.outer_deg),
+          HalfAngleCap(light.outer_deg * light.inner_fraction)};
+}
+
+Arrival ArrivalAt(const SpotCone& light, const Vec3& position_m) {
   Arrival arrival = ArrivalAt(light.source, position_m);
   const double off_axis = 1 + Dot(arrival.towards, light.axis);  // 1 - cos of the angle off axis
-  const double outer = HalfAngleCap(light.outer_deg);
-  const double inner = HalfAngleCap(light.outer_deg * light.inner_fraction);
-  if (off_axis >= outer) return {arrival.towards, {}};
-  const double edge = off_axis <= inner ? 1 : (outer - off_axis) / (outer - inner);
+  if (off_axis >= light.outer_cap) return {arrival.towards, {}};
+  if (off_axis <= light.inner_cap) return arrival;
+  const double edge = (light.outer_cap - off_axis) / (light.outer_cap - light.inner_cap);
   arrival.illuminance_lux = (edge * edge) * arrival.illuminance_lux;
   return arrival;
+}
+
+Arrival ArrivalAt(const SpotLight& light, const Vec3& position_m) {
+  return ArrivalAt(ConeOf(light), position_m);
 }
 
 Vec3 TowardsLight(double rotation_x_deg, double rotation_y_deg) {

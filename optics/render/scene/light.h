@@ -45,6 +45,15 @@ struct AmbientLight {
 
 using Light = std::variant<DirectionalLight, PointLight, SpotLight, AmbientLight>;
 
+// A spot light with 1 - cos of its half angles, for many places.
+struct SpotCone {
+  PointLight source;
+  Vec3 axis;
+  double outer_cap = 0;
+  double inner_cap = 0;
+};
+SpotCone ConeOf(const SpotLight& light);
+
 // What arrives from a light other than an ambient one.
 struct Arrival {
   Vec3 towards;         // unit, towards the light
@@ -52,6 +61,7 @@ struct Arrival {
 };
 Arrival ArrivalAt(const DirectionalLight& light, const Vec3& position_m);
 Arrival ArrivalAt(const PointLight& light, const Vec3& position_m);
+Arrival ArrivalAt(const SpotCone& light, const Vec3& position_m);
 Arrival ArrivalAt(const SpotLight& light, const Vec3& position_m);
 
 // Direction towards a directional light with Unity's rotation X, Y, in degrees: (-cos X sin Y, sin

@@ -47,6 +47,14 @@ Material PrepareMaterial(const Material& material, Renderer renderer) {
                     std::get<LitMaterial>(material));
 }
 
+void RaiseFloor(const RendererSettings& settings, Material& material) {
+  auto* lit = std::get_if<LitMaterial>(&material);
+  auto* lambert = lit == nullptr ? nullptr : std::get_if<Lambert>(lit);
+  if (lambert == nullptr) return;
+  const double floor = settings.reflectance_floor / settings.rendering_constant;
+  lambert->diffuse = lambert->diffuse + Rgb{floor, floor, floor};
+}
+
 // Scene-linear colour with which an intensity of 1 lights.
 struct LightScale {
   Renderer renderer;
@@ -93,7 +101,7 @@ struct AddLight {
     if (Prepared(light)) scene.sources.push_back({light, index});
   }
   void operator()(SpotLight light) const {
-    if (Prepared(light.source)) scene.sources.push_back({light, index});
+    if (Prepared(light.source)) scene.sources.push_back({ConeOf(light), index});
   }
   void operator()(const AmbientLight& light) const {
     scene.ambient = scene.ambient + scale.Surround(light.colour, light.luminance_cd_m2);
@@ -112,6 +120,9 @@ PreparedScene Prepare(const Scene& scene) {
   const RendererSettings& settings = scene.settings;
   for (const Material& material : scene.materials) {
     prepared.materials.push_back(PrepareMaterial(material, settings.renderer));
+  }
+  if (settings.renderer == Renderer::kHdrp && settings.reflectance_floor != 0) {
+    for (Material& material : prepared.materials) RaiseFloor(settings, material);
   }
   for (size_t i = 0; i < scene.lights.size(); ++i) {
     std::visit(AddLight{prepared, {settings.renderer}, i}, scene.lights[i]);

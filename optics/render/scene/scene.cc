@@ -42,18 +42,20 @@ struct ShadeLit {
   const Patch& patch;
 
   template <typename Lit>
-  Rgb operator()(const Lit& material) const {
+  ShadedParts operator()(const Lit& material) const {
     Reflector<Lit> reflector(material);
-    Rgb sum = {};
+    ShadedParts parts;
     for (const PreparedScene::Source& source : scene.sources) {
       const Arrival arrival = ArrivalOf(source, patch.position_m);
       if (IsBlack(arrival.illuminance_lux) || Dot(patch.normal, arrival.towards) <= 0) continue;
       const Directions d = DirectionsBetween(patch.normal, arrival.towards, patch.view);
-      sum = sum + arrival.illuminance_lux * reflector(d);
+      parts.direct = parts.direct + arrival.illuminance_lux * reflector(d);
     }
-    if (IsBlack(scene.ambient)) return sum;
+    parts.direct = scene.exposure * parts.direct;
+    if (IsBlack(scene.ambient)) return parts;
     const double n_v = std::clamp(Dot(patch.normal, patch.view), 0.0, 1.0);
-    return sum + scene.ambient * material.AmbientReflected(n_v);
+    parts.ambient = scene.exposure * (scene.ambient * material.AmbientReflected(n_v));
+    return parts;
   }
 };
 
@@ -104,10 +106,15 @@ std::string_view NameOf(LightUse use) {
   return "";
 }
 
-Rgb Shade(const PreparedScene& scene, const Patch& patch) {
+ShadedParts ShadeParts(const PreparedScene& scene, const Patch& patch) {
   const Material& material = scene.materials[patch.material];
-  if (const auto* unlit = std::get_if<Unlit>(&material)) return unlit->colour;
-  return scene.exposure * std::visit(ShadeLit{scene, patch}, std::get<LitMaterial>(material));
+  if (const auto* unlit = std::get_if<Unlit>(&material)) return {.direct = unlit->colour};
+  return std::visit(ShadeLit{scene, patch}, std::get<LitMaterial>(material));
+}
+
+Rgb Shade(const PreparedScene& scene, const Patch& patch) {
+  const ShadedParts parts = ShadeParts(scene, patch);
+  return parts.direct + parts.ambient;
 }
 
 TermsUsed ExplainShading(const Scene& scene, const PreparedScene& prepared, const Patch& patch) {

@@ -20,6 +20,8 @@ struct RendererSettings {
   Renderer renderer = Renderer::kHdrp;
   double exposure_ev = 0;             // e, HDRP's Fixed Exposure: lit colours are divided by 2^e
   double rendering_constant = 0.822;  // c of HDRP (HDRP model, eq 2); 1 for the others
+  // Of HDRP's Lambertian: c s(m) + this is what a colour reflects; 0 as published.
+  double reflectance_floor = 0;
 };
 
 // Shows its colour whatever the light and the exposure (HDRP model, eq 3).
@@ -46,7 +48,7 @@ struct Scene {
 // A scene made ready: colours scene-linear, black lights and settings without effect gone.
 struct PreparedScene {
   struct Source {
-    std::variant<DirectionalLight, PointLight, SpotLight> light;
+    std::variant<DirectionalLight, PointLight, SpotCone> light;
     size_t index = 0;  // in Scene::lights
   };
   std::vector<Material> materials;
@@ -65,8 +67,15 @@ struct PreparedScene {
 // published: taken as intensity times colour, transformed.
 PreparedScene Prepare(const Scene& scene);
 
-// u, the scene-linear colour before post-processing (Gamma mode: the drive value before clamping).
-// `patch.view` must not be behind the surface. Computes only what contributes.
+// Light that leaves a patch, exposed, apart as some renderers store it: of all other lights, and of
+// ambient light. An unlit colour is direct.
+struct ShadedParts {
+  Rgb direct = {};
+  Rgb ambient = {};
+};
+// Their sum is u, the scene-linear colour before post-processing (Gamma mode: the drive value
+// before clamping). `patch.view` must not be behind the surface. Computes only what contributes.
+ShadedParts ShadeParts(const PreparedScene& scene, const Patch& patch);
 Rgb Shade(const PreparedScene& scene, const Patch& patch);
 
 // What became of each light of the scene at a patch.

@@ -31,15 +31,18 @@ absl::Status ValidateDrives(std::span<const double> drives) {
   return absl::OkStatus();
 }
 
+absl::Status NotFinite(size_t level, size_t location, float luminance, const char* remedy) {
+  return BadInput(absl::StrCat(LevelName(level), ", location ", location),
+                  absl::StrCat("luminance ", luminance, " is not finite"), remedy);
+}
+
 absl::Status NameNotFinite(const FieldStack& stack) {
   const size_t locations = stack.LocationCount();
   for (size_t i = 0; i < stack.luminance.size(); ++i) {
     const size_t location = i % locations;
     if (std::isfinite(stack.luminance[i])) continue;
     if (!stack.valid.empty() && stack.valid[location] == 0) continue;
-    return BadInput(absl::StrCat(LevelName(i / locations), ", location ", location),
-                    absl::StrCat("luminance ", stack.luminance[i], " is not finite"),
-                    "mark the location as not valid");
+    return NotFinite(i / locations, location, stack.luminance[i], "mark the location as not valid");
   }
   return absl::OkStatus();
 }
@@ -82,11 +85,31 @@ absl::Status ValidateOptions(const FieldStack& stack, const CommonExponentOption
                     absl::StrCat("weight ", options.level_weights[i], " is not above 0 and finite"),
                     "leave a level out rather than weight it with 0");
   }
-  if (!(options.gamma_min > 0 && options.gamma_min < options.gamma_max &&
-        std::isfinite(options.gamma_max))) {
-    return BadInput("gamma limits",
-                    absl::StrCat(options.gamma_min, " to ", options.gamma_max, " is no interval"),
-                    "give 0 < gamma_min < gamma_max");
+  return ValidateGammaLimits(options.gamma_min, options.gamma_max);
+}
+
+absl::Status ValidateGammaLimits(double gamma_min, double gamma_max) {
+  if (gamma_min > 0 && gamma_min < gamma_max && std::isfinite(gamma_max)) return absl::OkStatus();
+  return BadInput("gamma limits", absl::StrCat(gamma_min, " to ", gamma_max, " is no interval"),
+                  "give 0 < gamma_min < gamma_max");
+}
+
+absl::Status ValidateMaskedStack(const MaskedStack& stack) {
+  EYEBOX_RETURN_IF_ERROR(ValidateStack({stack.drives, stack.luminance, {}}));
+  if (stack.LocationCount() == 0) {
+    return Rejected(kStack, "it has no location", "check the mask and the exposures");
+  }
+  if (!stack.valid.empty() && stack.valid.size() != stack.luminance.size()) {
+    return BadInput(kStack,
+                    absl::StrCat("its mask has ", stack.valid.size(), " places, the stack has ",
+                                 stack.luminance.size()),
+                    "give one place per level and location, or no mask");
+  }
+  for (size_t i = 0; i < stack.luminance.size(); ++i) {
+    if (std::isfinite(stack.luminance[i])) continue;
+    if (!stack.valid.empty() && stack.valid[i] == 0) continue;
+    return NotFinite(i / stack.LocationCount(), i % stack.LocationCount(), stack.luminance[i],
+                     "mark the reading as not valid");
   }
   return absl::OkStatus();
 }

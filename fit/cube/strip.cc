@@ -31,31 +31,33 @@ StripPixel PixelOf(int size, size_t entry) {
 
 }  // namespace
 
+absl::StatusOr<std::string> EncodeStrip(const Cube3d& cube) {
+  const int size = cube.size;
+  if (size < kSmallestStrip || size > kLargestStrip) {
+    return BadInput("strip", absl::StrCat("size ", size, " is outside 2 to ", kLargestStrip),
+                    "design a smaller table");
+  }
+  Image<Rgb8> image({size * size, size});
+  for (size_t i = 0; i < cube.entries.size(); ++i) {
+    const StripPixel pixel = PixelOf(size, i);
+    for (size_t channel = 0; channel < 3; ++channel) {
+      const double entry = cube.entries[i][channel];
+      if (!(entry >= 0 && entry <= 1)) {
+        return BadInput("strip", "an entry is outside [0, 1]", "give drive values");
+      }
+      image.at(pixel.x, pixel.y)[channel] = static_cast<uint8_t>(std::lround(kTop * entry));
+    }
+  }
+  return EncodePng(image);
+}
+
 absl::StatusOr<std::string> EncodeStrip(const TableDesign& table) {
-  const int size = table.size;
   if (table.target != TableTarget::kPps) {
     return BadInput("strip",
                     absl::StrCat("the table was designed for ", std::string(NameOf(table.target))),
                     "design it for pps");
   }
-  if (size < kSmallestStrip || size > kLargestStrip) {
-    return BadInput("strip", absl::StrCat("size ", size, " is outside 2 to ", kLargestStrip),
-                    "design a smaller table");
-  }
-  const auto holds = [](double entry) { return entry >= 0 && entry <= 1; };
-  if (!std::ranges::all_of(table.entries, holds)) {
-    return BadInput("strip", "an entry is outside [0, 1]", "give drive values");
-  }
-  Image<Rgb8> image({size * size, size});
-  const Cube3d cube = ToCube(table, "");
-  for (size_t i = 0; i < cube.entries.size(); ++i) {
-    const StripPixel pixel = PixelOf(size, i);
-    for (size_t channel = 0; channel < 3; ++channel) {
-      image.at(pixel.x, pixel.y)[channel] =
-          static_cast<uint8_t>(std::lround(kTop * cube.entries[i][channel]));
-    }
-  }
-  return EncodePng(image);
+  return EncodeStrip(ToCube(table, ""));
 }
 
 absl::StatusOr<Cube3d> ReadStrip(const std::filesystem::path& file) {

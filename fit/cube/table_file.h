@@ -36,6 +36,7 @@ absl::StatusOr<Cube3d> ReadCube(const std::filesystem::path& file);
 // Bytes of the strip PNG. Errors: InvalidArgument (size outside 2 to 32, target not kPps, entries
 // outside [0, 1]).
 absl::StatusOr<std::string> EncodeStrip(const TableDesign& table);
+absl::StatusOr<std::string> EncodeStrip(const Cube3d& cube);
 // Entries in [0, 1]. Errors: NotFound, InvalidArgument (not n x n^2), DataLoss; each names the
 // file.
 absl::StatusOr<Cube3d> ReadStrip(const std::filesystem::path& file);

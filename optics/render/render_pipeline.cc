@@ -16,6 +16,7 @@ struct StageName {
   }
   std::string_view operator()(const SrgbBuffer&) const { return "8-bit sRGB buffer"; }
   std::string_view operator()(const QuantiseTo8Bits&) const { return "rounding to 8 bits"; }
+  std::string_view operator()(const DitherMean&) const { return "mean of the dither"; }
   std::string_view operator()(const Saturate&) const { return "clamp to 0..1"; }
   std::string_view operator()(const LogCTable&) const { return "table in LogC"; }
   std::string_view operator()(const KnotTable&) const { return "table linear in u"; }

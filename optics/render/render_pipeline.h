@@ -13,7 +13,7 @@ namespace eyebox::optics {
 
 using Stage =
     std::variant<EncodeSrgb, DecodeSrgb, Exposure, PackedFloatBuffer, HalfFloatBuffer, SrgbBuffer,
-                 QuantiseTo8Bits, Saturate, LogCTable, KnotTable, UniformTable>;
+                 QuantiseTo8Bits, DitherMean, Saturate, LogCTable, KnotTable, UniformTable>;
 using RenderPipeline = std::vector<Stage>;
 
 // The colour that leaves the last stage.

@@ -59,6 +59,10 @@ Rgb SrgbBuffer::Apply(const Rgb& linear) const {
 
 Rgb QuantiseTo8Bits::Apply(const Rgb& encoded) const { return PerChannel(encoded, Quantised); }
 
+Rgb DitherMean::Apply(const Rgb& encoded) const {
+  return PerChannel(encoded, [this](double value) { return value + levels / kTop8Bit; });
+}
+
 Rgb Saturate::Apply(const Rgb& value) const { return PerChannel(value, Saturated); }
 
 Rgb LogCTable::Apply(const Rgb& linear) const {

@@ -51,6 +51,12 @@ struct QuantiseTo8Bits {
   Rgb Apply(const Rgb& encoded) const;
 };
 
+// The mean of the dither that is added before rounding to 8 bits: constant, in levels of 1/255.
+struct DitherMean {
+  double levels = 0;
+  Rgb Apply(const Rgb& encoded) const;
+};
+
 // Cut to [0, 1] without rounding; NaN becomes 0.
 struct Saturate {
   Rgb Apply(const Rgb& value) const;

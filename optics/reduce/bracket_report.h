@@ -27,7 +27,8 @@ struct ExposureShare {
   double valid = 0;         // share of pixels that entered the merge
 };
 
-// Mean over the valid pixels of each term's part of the variance of the merged image; sums to 1.
+// Mean over the valid pixels of each term's part of the variance of the image. All but `scale` sum
+// to 1: the error of the scale is common to all pixels and not part of their variance.
 struct VarianceBudget {
   double photon = 0;  // shot noise of the light
   double read = 0;
@@ -35,6 +36,9 @@ struct VarianceBudget {
   double dark = 0;  // noise of the dark frames, and shot noise of the dark current
   double flat = 0;
   double linearity = 0;  // of the linearity correction
+  double scatter = 0;    // what the correction for scattered light added
+  // Variance of the luminance scale and of the corrections for drift, over that of a pixel.
+  double scale = 0;
 };
 
 struct BracketReport {

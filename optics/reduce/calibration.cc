@@ -36,6 +36,12 @@ absl::StatusOr<const DarkFrame*> FindDark(const Calibration& calibration, const 
       std::find_if(calibration.darks.begin(), calibration.darks.end(),
                    [&](const DarkFrame& dark) { return SameSetting(dark.setting, setting); });
   if (found != calibration.darks.end()) return &*found;
+  for (const auto& [refused, why] : calibration.refused_darks) {
+    if (SameSetting(refused, setting)) {
+      return BadInput(absl::StrCat("light of ", Describe(setting)), "no dark has this setting",
+                      why);
+    }
+  }
   std::string known = "darks there are:";
   for (const DarkFrame& dark : calibration.darks) {
     absl::StrAppend(&known, " [", Describe(dark.setting), "]");

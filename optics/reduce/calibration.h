@@ -11,6 +11,8 @@
 #define EYEBOX_OPTICS_REDUCE_CALIBRATION_H_
 
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -40,7 +42,10 @@ struct FlatField {
 
 struct Calibration {
   NoiseModel noise;
-  std::vector<DarkFrame> darks;  // one per setting used
+  double saturation_margin = SensorRange{}.saturation_margin;  // of the stacks to be reduced
+  std::vector<DarkFrame> darks;                                // one per setting used
+  // Settings of lights without a dark for which none could be interpolated, and why.
+  std::vector<std::pair<Setting, std::string>> refused_darks;
   DefectMap defects;
   std::optional<LinearityCurve> linearity;  // without one, counts are taken as they are
   std::optional<FlatField> flat;

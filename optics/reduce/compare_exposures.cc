@@ -4,19 +4,9 @@
 #include <limits>
 
 namespace eyebox::optics {
-namespace {
 
-struct PairSums {
-  double shorter = 0;
-  double longer = 0;
-  double shorter_variance = 0;
-  double longer_variance = 0;
-  size_t pixels = 0;
-};
-
-PairSums SumPair(const MeasuredImage& shorter, const MeasuredImage& longer,
-                 const Image<float>& expected_rate_dn_s) {
-  PairSums sums;
+void AddPair(const MeasuredImage& shorter, const MeasuredImage& longer,
+             const Image<float>& expected_rate_dn_s, PairSums& sums) {
   const auto expected = expected_rate_dn_s.pixels();
   for (size_t i = 0; i < expected.size(); ++i) {
     if ((shorter.mask.pixels()[i] | longer.mask.pixels()[i]) != 0) continue;
@@ -30,15 +20,17 @@ PairSums SumPair(const MeasuredImage& shorter, const MeasuredImage& longer,
     sums.shorter_variance += weight * weight * shorter_variance;
     sums.longer_variance += weight * weight * longer_variance;
   }
-  return sums;
 }
-
-}  // namespace
 
 ExposurePairCheck CompareExposures(const MeasuredImage& shorter, double shorter_s,
                                    const MeasuredImage& longer, double longer_s,
                                    const Image<float>& expected_rate_dn_s) {
-  const PairSums sums = SumPair(shorter, longer, expected_rate_dn_s);
+  PairSums sums;
+  AddPair(shorter, longer, expected_rate_dn_s, sums);
+  return CompareExposures(sums, shorter_s, longer_s);
+}
+
+ExposurePairCheck CompareExposures(const PairSums& sums, double shorter_s, double longer_s) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   ExposurePairCheck check{shorter_s, longer_s, kNone, kNone, sums.pixels};
   if (!(sums.shorter > 3 * std::sqrt(sums.shorter_variance))) return check;

@@ -8,6 +8,18 @@
 
 namespace eyebox::optics {
 
+// Sums of what the comparison needs, over any number of parts of the images.
+struct PairSums {
+  double shorter = 0;
+  double longer = 0;
+  double shorter_variance = 0;
+  double longer_variance = 0;
+  size_t pixels = 0;
+};
+void AddPair(const MeasuredImage& shorter, const MeasuredImage& longer,
+             const Image<float>& expected_rate_dn_s, PairSums& sums);
+ExposurePairCheck CompareExposures(const PairSums& sums, double shorter_s, double longer_s);
+
 // Ratio of the two rates over the pixels valid in both: sum(w longer) / sum(w shorter), with
 // w = expected rate / (sum of variances), which minimises its variance for one common ratio and
 // lets pixels without signal not count. Images in DN/s, same size.

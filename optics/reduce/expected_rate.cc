@@ -27,7 +27,7 @@ struct RowPool {
 void AddExposure(const Exposure& exposure, std::span<const uint8_t> defective, int y,
                  const NoiseModel& noise, RowPool& pool) {
   const auto light = exposure.light->mean_dn.row(y);
-  const auto saturation = exposure.saturation.row(y);
+  const auto saturation = exposure.saturation.row(y - exposure.saturation_first_row);
   const auto dark = exposure.dark->image_dn.value.row(y);
   const auto dark_variance = exposure.dark->image_dn.variance.row(y);
   const auto dark_mask = exposure.dark->image_dn.mask.row(y);
@@ -44,18 +44,19 @@ void AddExposure(const Exposure& exposure, std::span<const uint8_t> defective, i
   }
 }
 
-PooledRate PoolExposures(std::span<const Exposure> exposures, const Calibration& calibration) {
-  const ImageSize size = exposures[0].light->size();
+PooledRate PoolExposures(std::span<const Exposure> exposures, const Calibration& calibration,
+                         Rows rows) {
+  const ImageSize size{exposures[0].light->size().width_px, rows.count()};
   const auto gain = static_cast<float>(calibration.noise.gain_dn_per_e);
   PooledRate pooled{Image<float>(size), Image<float>(size), Image<float>(size)};
-  for (int y = 0; y < size.height_px; ++y) {
+  for (int y = rows.first; y < rows.end; ++y) {
     RowPool pool(size.width_px);
     for (const Exposure& exposure : exposures) {
       AddExposure(exposure, calibration.defects.defective.row(y), y, calibration.noise, pool);
     }
-    const auto rate = pooled.rate_dn_s.row(y);
-    const auto dark_variance = pooled.dark_variance.row(y);
-    const auto shot_variance = pooled.shot_variance.row(y);
+    const auto rate = pooled.rate_dn_s.row(y - rows.first);
+    const auto dark_variance = pooled.dark_variance.row(y - rows.first);
+    const auto shot_variance = pooled.shot_variance.row(y - rows.first);
     for (int x = 0; x < size.width_px; ++x) {
       const float per_s = 1.0F / pool.time_s[x];
       rate[x] = pool.time_s[x] > 0 ? pool.counts_dn[x] * per_s : kNoValue;
@@ -70,7 +71,14 @@ PooledRate PoolExposures(std::span<const Exposure> exposures, const Calibration&
 
 Image<float> ExpectedRate(std::span<const Exposure> exposures, const Calibration& calibration,
                           const ExpectedRateOptions& options) {
-  PooledRate pooled = PoolExposures(exposures, calibration);
+  return ExpectedRate(exposures, calibration, options, AllRows(exposures[0].light->size()));
+}
+
+Image<float> ExpectedRate(std::span<const Exposure> exposures, const Calibration& calibration,
+                          const ExpectedRateOptions& options, Rows rows) {
+  const int reach = options.smoothing_radius * options.colour_period_px;
+  const Rows seen = rows.Widened(reach, exposures[0].light->size().height_px);
+  PooledRate pooled = PoolExposures(exposures, calibration, seen);
   const Image<float> smooth =
       BoxMean(pooled.rate_dn_s, options.smoothing_radius, options.colour_period_px);
   const auto edge = static_cast<float>(options.edge_sigmas * options.edge_sigmas);
@@ -87,7 +95,8 @@ Image<float> ExpectedRate(std::span<const Exposure> exposures, const Calibration
     // False for NaN, which then stays NaN.
     rate[i] = departure * departure <= edge * variance ? mean[i] : rate[i];
   }
-  return std::move(pooled.rate_dn_s);
+  if (seen.count() == rows.count()) return std::move(pooled.rate_dn_s);
+  return CropRows(pooled.rate_dn_s, {rows.first - seen.first, rows.end - seen.first});
 }
 
 }  // namespace eyebox::optics

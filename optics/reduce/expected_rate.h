@@ -12,6 +12,7 @@
 #include "capture/base/image.h"
 #include "optics/reduce/calibration.h"
 #include "optics/reduce/frame_stacker.h"
+#include "optics/reduce/rows.h"
 
 namespace eyebox::optics {
 
@@ -19,7 +20,8 @@ namespace eyebox::optics {
 struct Exposure {
   const Stack* light = nullptr;
   const DarkFrame* dark = nullptr;
-  Image<uint8_t> saturation;  // of light, see SaturationMask
+  Image<uint8_t> saturation;     // of light, see SaturationMask
+  int saturation_first_row = 0;  // row of light that its first row belongs to
 };
 
 struct ExpectedRateOptions {
@@ -35,6 +37,10 @@ struct ExpectedRateOptions {
 // beforehand, hence unbiased.
 Image<float> ExpectedRate(std::span<const Exposure> exposures, const Calibration& calibration,
                           const ExpectedRateOptions& options);
+
+// Those rows of it. Rows of `saturation` within smoothing_radius * colour_period_px must be there.
+Image<float> ExpectedRate(std::span<const Exposure> exposures, const Calibration& calibration,
+                          const ExpectedRateOptions& options, Rows rows);
 
 }  // namespace eyebox::optics
 

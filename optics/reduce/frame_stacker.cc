@@ -5,18 +5,71 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "capture/base/parallel.h"
 #include "capture/base/status.h"
 
 namespace eyebox::optics {
 namespace {
 
 constexpr int kMaximumFrames = 65536;
+constexpr int kSumBits = 16;
+// One thread's share of a frame, and what it adds before it goes on: near enough to be read twice.
+constexpr size_t kPieceOfFrame = 1 << 19;
+constexpr size_t kPieceInCache = 1 << 12;
 
-// Every bit that is set in any pixel: cheaper than a maximum and tells the same of 2^bits - 1.
-uint16_t BitsInUse(std::span<const uint16_t> pixels_dn) {
-  uint16_t bits = 0;
-  for (const uint16_t dn : pixels_dn) bits = static_cast<uint16_t>(bits | dn);
-  return bits;
+// What the counts of some pixels have in common.
+struct Counts {
+  uint16_t bits = 0;       // every bit that is set in any: tells of 2^bits - 1 what a maximum would
+  bool saturated = false;  // any
+};
+
+Counts LookAt(std::span<const uint16_t> pixels_dn, uint16_t saturation) {
+  Counts counts;
+  uint16_t reached = 0;
+  for (const uint16_t dn : pixels_dn) {
+    counts.bits = static_cast<uint16_t>(counts.bits | dn);
+    reached = static_cast<uint16_t>(reached | (dn >= saturation ? 1 : 0));
+  }
+  counts.saturated = reached != 0;
+  return counts;
+}
+
+template <typename Sum>
+void AddTo(std::span<const uint16_t> dn, std::span<Sum> sum) {
+  for (size_t i = 0; i < dn.size(); ++i) sum[i] = static_cast<Sum>(sum[i] + dn[i]);
+}
+
+void CountSaturated(std::span<const uint16_t> dn, uint16_t saturation, std::span<uint8_t> count) {
+  for (size_t i = 0; i < dn.size(); ++i) {
+    const uint8_t more = static_cast<uint8_t>((dn[i] >= saturation) & (count[i] != 255));
+    count[i] = static_cast<uint8_t>(count[i] + more);
+  }
+}
+
+// Sorts each count in among the two highest and the two lowest. `first`: of the extremes' pixels.
+void SortIn(std::span<const uint16_t> dn, size_t first, Extremes& extremes) {
+  uint16_t* const highest = extremes.highest.pixels().data() + first;
+  uint16_t* const second_highest = extremes.second_highest.pixels().data() + first;
+  uint16_t* const second_lowest = extremes.second_lowest.pixels().data() + first;
+  uint16_t* const lowest = extremes.lowest.pixels().data() + first;
+  for (size_t i = 0; i < dn.size(); ++i) {
+    second_highest[i] = std::max(second_highest[i], std::min(highest[i], dn[i]));
+    highest[i] = std::max(highest[i], dn[i]);
+    second_lowest[i] = std::min(second_lowest[i], std::max(lowest[i], dn[i]));
+    lowest[i] = std::min(lowest[i], dn[i]);
+  }
+}
+
+int PiecesOf(size_t pixels) {
+  return static_cast<int>((pixels + kPieceOfFrame - 1) / kPieceOfFrame);
+}
+
+template <typename Work>
+void ForEachPiece(size_t pixels, const Work& work) {
+  ForEachInParallel(PiecesOf(pixels), [&](int piece) {
+    const size_t first = piece * kPieceOfFrame;
+    work(first, std::min(first + kPieceOfFrame, pixels));
+  });
 }
 
 }  // namespace
@@ -47,25 +100,60 @@ absl::Status FrameStacker::Add(const FrameView& frame) {
   if (frames_ >= kMaximumFrames) {
     return BadInput(where, absl::StrCat("more than ", kMaximumFrames, " frames"), "split them");
   }
-  if ((BitsInUse(frame.pixels_dn) >> range_.bits) != 0) {
+  if (frames_ == 0) Begin(frame.size);
+  if (partial_frames_ == PartialCapacity()) FlushPartial();
+  const uint16_t bits = AddPieces(frame.pixels_dn);
+  if ((bits >> range_.bits) != 0) {
+    *this = FrameStacker(setting_, range_, keep_extremes_);
     return BadInput(where, absl::StrCat("a count is above ", range_.FullScaleDn(), " DN"),
                     absl::StrCat("state more significant bits than ", range_.bits));
   }
-  if (frames_ == 0) {
-    sum_dn_ = Image<uint32_t>(frame.size);
-    saturated_count_ = Image<uint8_t>(frame.size);
-  }
-  const auto saturation = static_cast<uint16_t>(range_.SaturationDn());
-  const uint16_t* const dn = frame.pixels_dn.data();
-  uint32_t* const sum = sum_dn_.pixels().data();
-  uint8_t* const saturated = saturated_count_.pixels().data();
-  for (size_t i = 0; i < count; ++i) {
-    sum[i] += dn[i];
-    const uint8_t counts = static_cast<uint8_t>((dn[i] >= saturation) & (saturated[i] != 255));
-    saturated[i] = static_cast<uint8_t>(saturated[i] + counts);
-  }
   ++frames_;
+  ++partial_frames_;
   return absl::OkStatus();
+}
+
+int FrameStacker::PartialCapacity() const { return 1 << (kSumBits - range_.bits); }
+
+void FrameStacker::Begin(ImageSize size) {
+  partial_dn_ = Image<uint16_t>(size);
+  sum_dn_ = Image<uint32_t>(size);
+  saturated_count_ = Image<uint8_t>(size);
+  partial_frames_ = 0;
+  if (!keep_extremes_) return;
+  constexpr uint16_t kAboveAll = 65535;
+  extremes_ = Extremes{Image<uint16_t>(size), Image<uint16_t>(size),
+                       Image<uint16_t>(size, kAboveAll), Image<uint16_t>(size, kAboveAll)};
+}
+
+uint16_t FrameStacker::AddPieces(std::span<const uint16_t> pixels_dn) {
+  const auto saturation = static_cast<uint16_t>(range_.SaturationDn());
+  std::vector<uint16_t> bits(PiecesOf(pixels_dn.size()));
+  ForEachPiece(pixels_dn.size(), [&](size_t first, size_t end) {
+    uint16_t& in_use = bits[first / kPieceOfFrame];
+    for (size_t begin = first; begin < end; begin += kPieceInCache) {
+      const size_t count = std::min(kPieceInCache, end - begin);
+      const auto dn = pixels_dn.subspan(begin, count);
+      const Counts counts = LookAt(dn, saturation);
+      in_use = static_cast<uint16_t>(in_use | counts.bits);
+      AddTo(dn, partial_dn_.pixels().subspan(begin, count));
+      if (extremes_) SortIn(dn, begin, *extremes_);
+      if (!counts.saturated) continue;
+      CountSaturated(dn, saturation, saturated_count_.pixels().subspan(begin, count));
+    }
+  });
+  uint16_t all = 0;
+  for (const uint16_t some : bits) all = static_cast<uint16_t>(all | some);
+  return all;
+}
+
+void FrameStacker::FlushPartial() {
+  ForEachPiece(sum_dn_.pixels().size(), [&](size_t first, size_t end) {
+    const auto partial = partial_dn_.pixels().subspan(first, end - first);
+    AddTo<uint32_t>(partial, sum_dn_.pixels().subspan(first, end - first));
+    std::fill(partial.begin(), partial.end(), uint16_t{0});
+  });
+  partial_frames_ = 0;
 }
 
 absl::StatusOr<Stack> FrameStacker::Finish() {
@@ -75,12 +163,16 @@ absl::StatusOr<Stack> FrameStacker::Finish() {
   }
   Stack stack{setting_, range_, frames_, Image<float>(sum_dn_.size()), std::move(saturated_count_)};
   const double per_frame = 1.0 / frames_;
-  const auto sums = sum_dn_.pixels();
-  std::transform(sums.begin(), sums.end(), stack.mean_dn.pixels().begin(),
-                 [per_frame](uint32_t sum) { return static_cast<float>(sum * per_frame); });
-  frames_ = 0;
-  sum_dn_ = {};
-  saturated_count_ = {};
+  ForEachPiece(sum_dn_.pixels().size(), [&](size_t first, size_t end) {
+    const uint32_t* const sum = sum_dn_.pixels().data();
+    const uint16_t* const partial = partial_dn_.pixels().data();
+    float* const mean = stack.mean_dn.pixels().data();
+    for (size_t i = first; i < end; ++i) {
+      mean[i] = static_cast<float>((sum[i] + partial[i]) * per_frame);
+    }
+  });
+  stack.extremes = std::move(extremes_);
+  *this = FrameStacker(setting_, range_, keep_extremes_);
   return stack;
 }
 

@@ -72,8 +72,8 @@ absl::StatusOr<std::vector<LinearityPair>> MeasureExposurePairs(std::span<const 
   strict.saturation_step_px = 1;
   Calibration raw = calibration;
   raw.linearity.reset();
-  EYEBOX_ASSIGN_OR_RETURN(const std::vector<Exposure> bracket,
-                          OrderBracket(exposures, raw, strict));
+  EYEBOX_ASSIGN_OR_RETURN(std::vector<Exposure> bracket, OrderBracket(exposures, raw));
+  MaskSaturation(AllRows(bracket[0].light->size()), strict, bracket);
   const Image<float> expected =
       ExpectedRate(bracket, raw, {options.smoothing_radius, options.colour_period_px});
   const Image<uint8_t> outshone = OutshonePixels(expected);

@@ -1,5 +1,7 @@
 #include "optics/reduce/measure_stack.h"
 
+#include <span>
+
 #include "absl/strings/str_cat.h"
 
 namespace eyebox::optics {
@@ -22,6 +24,21 @@ struct NoiseF {
 
   float read, gain, quantisation, bias_dn, per_frame;
 };
+
+// Where frames were left out of the mean, fewer share the noise.
+void AllowForRejected(const Stack& light, int y, const NoiseF& model, float exposure_s,
+                      std::span<const float> expected_dn_s, std::span<const float> dark_dn,
+                      std::span<float> variance) {
+  if (light.rejected_count.empty()) return;
+  const auto rejected = light.rejected_count.row(y);
+  for (size_t x = 0; x < variance.size(); ++x) {
+    if (rejected[x] == 0) continue;
+    NoiseF fewer = model;
+    fewer.per_frame = 1.0F / static_cast<float>(light.frames - rejected[x]);
+    const float expected_dn = expected_dn_s[x] * exposure_s + dark_dn[x];
+    variance[x] = fewer.MeanVariance(fewer.FrameNoise(expected_dn - fewer.bias_dn));
+  }
+}
 
 struct Rails {
   float upper_dn;
@@ -67,6 +84,7 @@ MeasuredImage MeasureStack(const Exposure& exposure, const Image<float>& expecte
       variance[x] = model.MeanVariance(frame_noise);
       mask[x] = static_cast<uint8_t>(flags | (defective[x] != 0 ? kDefective : 0));
     }
+    AllowForRejected(light, y, model, exposure_s, expected, dark_dn, variance);
   }
   BlankMaskedPixels(image);
   image.history.push_back(absl::StrCat("MeasureStack(", Describe(light.setting), ", frames ",

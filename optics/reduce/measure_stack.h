@@ -9,7 +9,8 @@
 
 namespace eyebox::optics {
 
-// DN, dark not yet subtracted. The variance is that of the noise model at the expected count.
+// DN, dark not yet subtracted. The variance is that of the noise model at the expected count, of as
+// many frames as the pixel's mean holds.
 // Masked are saturated, defective and railed pixels; railed means that the expected count, not the
 // noisy one, is within `rail_guard_sigmas` of saturation or of 0 DN, where the clipped noise would
 // shift the mean. `expected_rate` is in DN/s above the dark, [height, width].

@@ -19,12 +19,14 @@ enum PixelFlag : uint8_t {
   kDefective = 1 << 2,     // hot or dead
   kNoFlat = 1 << 3,        // the flat has no usable value here
   kNoData = 1 << 4,        // nothing was measured here
+  kRepaired = 1 << 5,      // beside kDefective: the value is that of neighbours, not measured
 };
 
 inline constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 
 // value, variance and mask are [height, width]. Invariant: where mask is not 0, value and variance
-// are NaN; where it is 0, both are finite and variance > 0. Values may be negative.
+// are NaN, but for the value of repaired pixels; where it is 0, both are finite and variance > 0.
+// Values may be negative.
 struct MeasuredImage {
   Image<float> value;                // unit
   Image<float> variance;             // unit squared; independent from pixel to pixel

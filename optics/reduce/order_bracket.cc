@@ -42,8 +42,7 @@ int SaturationStep(const ReduceOptions& options) {
 }  // namespace
 
 absl::StatusOr<std::vector<Exposure>> OrderBracket(std::span<const Stack> stacks,
-                                                   const Calibration& calibration,
-                                                   const ReduceOptions& options) {
+                                                   const Calibration& calibration) {
   if (stacks.empty()) return BadInput("bracket", "it has no exposure", "record at least one");
   std::vector<Exposure> bracket;
   for (const Stack& stack : stacks) {
@@ -54,9 +53,7 @@ absl::StatusOr<std::vector<Exposure>> OrderBracket(std::span<const Stack> stacks
                       "its size differs from the light's",
                       "record both with one region of interest");
     }
-    bracket.push_back(
-        {&stack, dark,
-         SaturationMask(stack, options.saturation_dilation, SaturationStep(options))});
+    bracket.push_back({&stack, dark, {}});
   }
   std::sort(bracket.begin(), bracket.end(), [](const Exposure& a, const Exposure& b) {
     return a.light->setting.exposure_s < b.light->setting.exposure_s;
@@ -69,6 +66,14 @@ absl::StatusOr<std::vector<Exposure>> OrderBracket(std::span<const Stack> stacks
     }
   }
   return bracket;
+}
+
+void MaskSaturation(Rows rows, const ReduceOptions& options, std::span<Exposure> bracket) {
+  for (Exposure& exposure : bracket) {
+    exposure.saturation =
+        SaturationMask(*exposure.light, options.saturation_dilation, SaturationStep(options), rows);
+    exposure.saturation_first_row = rows.first;
+  }
 }
 
 absl::StatusOr<MeasuredImage> CountsOf(const Exposure& exposure,

@@ -11,14 +11,17 @@
 #include "optics/reduce/frame_stacker.h"
 #include "optics/reduce/measured_image.h"
 #include "optics/reduce/reduce_level.h"
+#include "optics/reduce/rows.h"
 
 namespace eyebox::optics {
 
-// Ascending exposure, each with its dark and its saturation mask. Borrows from both arguments.
+// Ascending exposure, each with its dark, without saturation masks. Borrows from both arguments.
 // Errors: those of ReduceRate.
 absl::StatusOr<std::vector<Exposure>> OrderBracket(std::span<const Stack> stacks,
-                                                   const Calibration& calibration,
-                                                   const ReduceOptions& options);
+                                                   const Calibration& calibration);
+
+// Fills in the saturation masks of those rows.
+void MaskSaturation(Rows rows, const ReduceOptions& options, std::span<Exposure> bracket);
 
 // Counts above the dark of one exposure, DN, masked, linearised where the calibration says how.
 absl::StatusOr<MeasuredImage> CountsOf(const Exposure& exposure,

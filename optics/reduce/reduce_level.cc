@@ -5,13 +5,16 @@
 #include <utility>
 #include <vector>
 
+#include "capture/base/parallel.h"
 #include "capture/base/status.h"
 #include "optics/photometry/scale_luminance.h"
 #include "optics/reduce/compare_exposures.h"
+#include "optics/reduce/count_pixels.h"
 #include "optics/reduce/divide_by_flat.h"
 #include "optics/reduce/expected_rate.h"
-#include "optics/reduce/merge_bracket.h"
 #include "optics/reduce/order_bracket.h"
+#include "optics/reduce/reduce_band.h"
+#include "optics/reduce/repair_defects.h"
 #include "optics/reduce/variance_budget.h"
 
 namespace eyebox::optics {
@@ -21,25 +24,57 @@ double Share(size_t part, size_t whole) {
   return static_cast<double>(part) / static_cast<double>(whole);
 }
 
-ExposureShare ShareOf(const Exposure& exposure, const MeasuredImage& rate) {
-  const auto clipped = exposure.light->saturated_count.pixels();
-  const size_t pixels = clipped.size();
-  const size_t unsaturated =
-      static_cast<size_t>(std::count(clipped.begin(), clipped.end(), uint8_t{0}));
-  ExposureShare share;
-  share.exposure_s = exposure.light->setting.exposure_s;
-  share.frames = exposure.light->frames;
-  share.saturated = Share(pixels - unsaturated, pixels);
-  share.underexposed = Share(CountFlagged(rate, kUnderexposed), pixels);
-  share.valid = Share(pixels - CountFlagged(rate, 0xFF), pixels);
-  return share;
+// Large enough that the neighbours that a band looks at cost little.
+constexpr int kBandPixels = 1 << 18;
+
+std::vector<Rows> BandsOf(ImageSize size) {
+  const int rows = std::max(kBandPixels / size.width_px, 1);
+  std::vector<Rows> bands;
+  for (int y = 0; y < size.height_px; y += rows) {
+    bands.push_back({y, std::min(y + rows, size.height_px)});
+  }
+  return bands;
+}
+
+// In the order of the bands, so that the sums do not depend on which thread was faster.
+BandSums Total(const std::vector<absl::StatusOr<BandSums>>& bands) {
+  BandSums total = *bands[0];
+  for (size_t b = 1; b < bands.size(); ++b) {
+    for (size_t k = 0; k < total.exposures.size(); ++k) {
+      const PixelCounts& counts = bands[b]->exposures[k];
+      total.exposures[k].saturated += counts.saturated;
+      total.exposures[k].underexposed += counts.underexposed;
+      total.exposures[k].valid += counts.valid;
+    }
+    for (size_t k = 0; k < total.pairs.size(); ++k) {
+      const PairSums& pair = bands[b]->pairs[k];
+      total.pairs[k].shorter += pair.shorter;
+      total.pairs[k].longer += pair.longer;
+      total.pairs[k].shorter_variance += pair.shorter_variance;
+      total.pairs[k].longer_variance += pair.longer_variance;
+      total.pairs[k].pixels += pair.pixels;
+    }
+  }
+  return total;
+}
+
+void ReportExposures(std::span<const Exposure> bracket, const BandSums& sums, size_t pixels,
+                     BracketReport& report) {
+  for (size_t k = 0; k < bracket.size(); ++k) {
+    const Stack& light = *bracket[k].light;
+    const PixelCounts& counts = sums.exposures[k];
+    report.exposures.push_back({light.setting.exposure_s, light.frames,
+                                Share(counts.saturated, pixels), Share(counts.underexposed, pixels),
+                                Share(counts.valid, pixels)});
+    if (k == 0) continue;
+    report.pairs.push_back(CompareExposures(
+        sums.pairs[k - 1], bracket[k - 1].light->setting.exposure_s, light.setting.exposure_s));
+  }
 }
 
 void ReportInvalid(const MeasuredImage& merged, BracketReport& report) {
   const auto mask = merged.mask.pixels();
-  const auto share_of = [&](auto&& is) {
-    return Share(static_cast<size_t>(std::count_if(mask.begin(), mask.end(), is)), mask.size());
-  };
+  const auto share_of = [&](auto&& is) { return Share(CountPixels(mask, is), mask.size()); };
   report.invalid_share = share_of([](uint8_t m) { return m != 0; });
   report.all_saturated_share = share_of([](uint8_t m) { return m == kSaturated; });
   report.all_dark_share = share_of([](uint8_t m) { return m == kUnderexposed; });
@@ -51,28 +86,20 @@ absl::StatusOr<ReducedRate> ReduceRate(std::span<const Stack> exposures,
                                        const Calibration& calibration,
                                        const ReduceOptions& options) {
   EYEBOX_ASSIGN_OR_RETURN(const std::vector<Exposure> bracket,
-                          OrderBracket(exposures, calibration, options));
-  const Image<float> expected =
-      ExpectedRate(bracket, calibration, {options.smoothing_radius, options.colour_period_px});
+                          OrderBracket(exposures, calibration));
+  const ImageSize size = bracket[0].light->size();
   ReducedRate reduced;
-  BracketMerger merger;
-  VarianceBudgetMeter budget(calibration.noise, calibration.linearity, expected.size());
-  MeasuredImage shorter;
-  double shorter_s = 0;
-  for (const Exposure& exposure : bracket) {
-    const double exposure_s = exposure.light->setting.exposure_s;
-    EYEBOX_ASSIGN_OR_RETURN(MeasuredImage rate, RateOf(exposure, expected, calibration, options));
-    reduced.report.exposures.push_back(ShareOf(exposure, rate));
-    if (shorter_s > 0) {
-      reduced.report.pairs.push_back(
-          CompareExposures(shorter, shorter_s, rate, exposure_s, expected));
-    }
-    EYEBOX_RETURN_IF_ERROR(merger.Add(rate));
-    budget.Add(exposure, rate, expected);
-    shorter = std::move(rate);
-    shorter_s = exposure_s;
-  }
-  EYEBOX_ASSIGN_OR_RETURN(reduced.rate, merger.Finish());
+  reduced.rate = MakeMeasuredImage(size, "DN/s");
+  VarianceBudgetMeter budget(calibration.noise, calibration.linearity, size);
+  const std::vector<Rows> bands = BandsOf(size);
+  std::vector<absl::StatusOr<BandSums>> sums(bands.size());
+  ForEachInParallel(static_cast<int>(bands.size()), [&](int b) {
+    sums[b] = ReduceBand(bracket, calibration, options, bands[b], reduced.rate, budget);
+  });
+  for (const auto& band : sums) EYEBOX_RETURN_IF_ERROR(band.status());
+  const BandSums total = Total(sums);
+  reduced.rate.history = total.history;
+  ReportExposures(bracket, total, size.PixelCount(), reduced.report);
   reduced.report.hot_share = calibration.defects.hot_share;
   reduced.report.budget = budget.Mean();
   ReportInvalid(reduced.rate, reduced.report);
@@ -96,6 +123,11 @@ absl::StatusOr<ReducedLevel> ReduceLevel(std::span<const Stack> exposures,
   }
   EYEBOX_ASSIGN_OR_RETURN(LuminanceImage luminance,
                           ScaleLuminance(std::move(image), calibration.flat.has_value(), per_unit));
+  reduced.report.budget =
+      WithScale(reduced.report.budget, luminance.image, luminance.scale_relative_sigma);
+  if (options.repair_defects) {
+    luminance.image = RepairDefects(std::move(luminance.image), options.colour_period_px);
+  }
   return ReducedLevel{std::move(luminance), std::move(reduced.report)};
 }
 

@@ -30,6 +30,8 @@ struct ReduceOptions {
   int smoothing_radius = 2;      // of the expected signal; 2 is 5 x 5 same-colour neighbours
   int colour_period_px = 2;      // distance of same-colour neighbours; 1 for a grey sensor
   double flat_minimum = 0.05;    // of the flat's median; below, the flat is unusable
+  // Fills defective pixels of the luminance for display, see RepairDefects(); they stay invalid.
+  bool repair_defects = false;
 };
 
 // A rate image in DN/s, before flat and scale.

@@ -6,6 +6,7 @@
 
 #include "capture/base/image.h"
 #include "optics/reduce/frame_stacker.h"
+#include "optics/reduce/rows.h"
 
 namespace eyebox::optics {
 
@@ -15,6 +16,9 @@ namespace eyebox::optics {
 // under narrow-band light one colour saturates long before the pixels between, whose counts would
 // all be lost.
 Image<uint8_t> SaturationMask(const Stack& stack, int dilation, int step_px);
+
+// Those rows of it.
+Image<uint8_t> SaturationMask(const Stack& stack, int dilation, int step_px, Rows rows);
 
 }  // namespace eyebox::optics
 

@@ -30,6 +30,9 @@ absl::StatusOr<MeasuredImage> SubtractDark(MeasuredImage light_dn, const Setting
     variance[i] += dark_variance[i];
     mask[i] = static_cast<uint8_t>(mask[i] | dark_mask[i]);
   }
+  for (const std::string& step : dark.image_dn.history) {
+    if (step.starts_with("InterpolateDark(")) light_dn.history.push_back(step);
+  }
   light_dn.history.push_back(absl::StrCat("SubtractDark(", Describe(dark.setting), ")"));
   return light_dn;
 }

@@ -10,6 +10,10 @@ constexpr size_t kSamples = 1 << 16;
 // Smallest stride that leaves at most kSamples, odd so that it meets every colour of a mosaic.
 size_t StrideFor(size_t pixels) { return ((pixels + kSamples - 1) / kSamples) | 1; }
 
+int FramesAt(const Stack& stack, size_t i) {
+  return stack.frames - (stack.rejected_count.empty() ? 0 : stack.rejected_count.pixels()[i]);
+}
+
 // The terms of one exposure's variance, (DN/s)^2; their sum is `variance`.
 VarianceBudget TermsOf(const NoiseModel& noise, const LinearityCurve::Corrected& corrected,
                        const Setting& setting, int frames, double expected_dn, double dark_dn,
@@ -36,6 +40,21 @@ void AddScaled(const VarianceBudget& terms, double factor, VarianceBudget& sum) 
   sum.dark += factor * terms.dark;
   sum.flat += factor * terms.flat;
   sum.linearity += factor * terms.linearity;
+  sum.scatter += factor * terms.scatter;
+}
+
+// Mean of `ratio(i)` over evenly sampled valid pixels; 0 if there is none.
+template <typename Ratio>
+double MeanOfValid(const MeasuredImage& image, const Ratio& ratio) {
+  const auto mask = image.mask.pixels();
+  double sum = 0;
+  size_t valid = 0;
+  for (size_t i = 0; i < mask.size(); i += StrideFor(mask.size())) {
+    if (mask[i] != 0) continue;
+    sum += ratio(i);
+    ++valid;
+  }
+  return valid == 0 ? 0 : sum / static_cast<double>(valid);
 }
 
 }  // namespace
@@ -49,17 +68,18 @@ VarianceBudgetMeter::VarianceBudgetMeter(const NoiseModel& noise,
       pixels_((size.PixelCount() + stride_ - 1) / stride_) {}
 
 void VarianceBudgetMeter::Add(const Exposure& exposure, const MeasuredImage& rate,
-                              const Image<float>& expected_rate_dn_s) {
+                              const Image<float>& expected_rate_dn_s, size_t first) {
   const Setting& setting = exposure.light->setting;
-  for (size_t k = 0; k < pixels_.size(); ++k) {
-    const size_t i = k * stride_;
+  const size_t end = first + rate.mask.pixels().size();
+  for (size_t k = (first + stride_ - 1) / stride_; k * stride_ < end; ++k) {
+    const size_t i = k * stride_ - first;
     if (rate.mask.pixels()[i] != 0) continue;
     const double variance = rate.variance.pixels()[i];
     const double expected_dn = expected_rate_dn_s.pixels()[i] * setting.exposure_s;
     const LinearityCurve::Corrected corrected =
         linearity_ ? linearity_->At(expected_dn) : LinearityCurve::Corrected{};
     const VarianceBudget terms =
-        TermsOf(noise_, corrected, setting, exposure.light->frames, expected_dn,
+        TermsOf(noise_, corrected, setting, FramesAt(*exposure.light, i), expected_dn,
                 exposure.dark->image_dn.value.pixels()[i], variance);
     AddScaled(terms, 1 / (variance * variance), pixels_[k].terms);
     pixels_[k].weight += 1 / variance;
@@ -78,22 +98,31 @@ VarianceBudget VarianceBudgetMeter::Mean() const {
   return mean;
 }
 
+VarianceBudget WithShare(const VarianceBudget& budget, double VarianceBudget::*term, double share) {
+  VarianceBudget with_share;
+  AddScaled(budget, 1 - share, with_share);
+  with_share.*term += share;
+  with_share.scale = budget.scale * (1 - share);
+  return with_share;
+}
+
+VarianceBudget WithScale(const VarianceBudget& budget, const MeasuredImage& image,
+                         double relative_sigma) {
+  VarianceBudget with_scale = budget;
+  with_scale.scale = MeanOfValid(image, [&](size_t i) {
+    const double common = relative_sigma * image.value.pixels()[i];
+    return common * common / image.variance.pixels()[i];
+  });
+  return with_scale;
+}
+
 VarianceBudget WithFlat(const VarianceBudget& budget, const MeasuredImage& ratio,
                         const MeasuredImage& response) {
-  const size_t pixels = ratio.mask.pixels().size();
-  double flat = 0;
-  double valid = 0;
-  for (size_t i = 0; i < pixels; i += StrideFor(pixels)) {
-    if (ratio.mask.pixels()[i] != 0) continue;
+  const double flat = MeanOfValid(ratio, [&](size_t i) {
     const double relative = ratio.value.pixels()[i] / response.value.pixels()[i];
-    flat += relative * relative * response.variance.pixels()[i] / ratio.variance.pixels()[i];
-    ++valid;
-  }
-  if (valid == 0) return budget;
-  VarianceBudget with_flat;
-  AddScaled(budget, 1 - flat / valid, with_flat);
-  with_flat.flat = flat / valid;
-  return with_flat;
+    return relative * relative * response.variance.pixels()[i] / ratio.variance.pixels()[i];
+  });
+  return WithShare(budget, &VarianceBudget::flat, flat);
 }
 
 }  // namespace eyebox::optics

@@ -23,8 +23,10 @@ class VarianceBudgetMeter {
                       ImageSize size);
 
   // An exposure and its rate image in DN/s, as it enters the merge.
+  // The arguments may be a part of the image that begins at its pixel `first`: disjoint parts may
+  // be added at the same time, the exposures of one part in one order.
   void Add(const Exposure& exposure, const MeasuredImage& rate,
-           const Image<float>& expected_rate_dn_s);
+           const Image<float>& expected_rate_dn_s, size_t first = 0);
 
   // All zero if no sampled pixel is valid.
   VarianceBudget Mean() const;
@@ -40,6 +42,13 @@ class VarianceBudgetMeter {
   size_t stride_;
   std::vector<PixelSums> pixels_;
 };
+
+// The budget once `share` (0 to 1) of the variance comes from another term; the rest shrinks.
+VarianceBudget WithShare(const VarianceBudget& budget, double VarianceBudget::*term, double share);
+
+// The budget of `image`, whose scale has that relative standard uncertainty.
+VarianceBudget WithScale(const VarianceBudget& budget, const MeasuredImage& image,
+                         double relative_sigma);
 
 // The budget of `ratio`, an image that was divided by the flat `response`, from that of the image.
 VarianceBudget WithFlat(const VarianceBudget& budget, const MeasuredImage& ratio,

@@ -3,8 +3,10 @@
 #include <string>
 
 #include "capture/base/status.h"
+#include "service/cli/colour_output.h"
 #include "service/cli/command.h"
 #include "service/cli/terminal.h"
+#include "service/colour.h"
 #include "service/report/report.h"
 #include "service/single_steps.h"
 
@@ -28,7 +30,25 @@ const std::map<std::string, fit::Weighting> kWeightings = {
     {"relative", fit::Weighting::kRelative},
     {"unweighted", fit::Weighting::kUnweighted}};
 
+absl::Status FitColours(const Options& options) {
+  if (options.fit.model || options.fit.weighting || !options.out.empty() || options.series) {
+    return BadInput(options.csv,
+                    "it is a series of colours, and --model, --weighting, --series and --out are "
+                    "for grey levels",
+                    "leave them out");
+  }
+  EYEBOX_ASSIGN_OR_RETURN(const v1::ColourResult result, FitColourCsv(options.csv, {}));
+  PrintWarnings(result.warnings());
+  if (options.json) return PrintJson(result);
+  PrintColourFit(result);
+  return absl::OkStatus();
+}
+
 absl::Status Run(const Options& options) {
+  if (!options.csv.empty()) {
+    EYEBOX_ASSIGN_OR_RETURN(const bool colours, fit::HoldsColours(options.csv));
+    if (colours) return FitColours(options);
+  }
   EYEBOX_ASSIGN_OR_RETURN(const v1::ActivationResult result,
                           options.csv.empty()
                               ? FitRecording({options.recording, options.series}, options.fit,
@@ -52,7 +72,9 @@ void AddFit(CLI::App& app, Work& work) {
       [](CLI::App& command, Options& options) {
         auto* source = command.add_option_group("source", "Exactly one of");
         source->add_option("recording", options.recording, "Folder of the recording");
-        source->add_option("--csv", options.csv, "Series with columns m_k,lum[,lum_sigma]");
+        source->add_option(
+            "--csv", options.csv,
+            "Series with columns m_k,lum[,lum_sigma], or m_r,m_g,m_b,x,y,z for colour");
         source->require_option(1);
         command.add_option("--series", options.series, "Series (default: the main or only one)");
         command

@@ -25,6 +25,7 @@
 #include "service/result_json.h"
 #include "service/results/activation.h"
 #include "service/results/cube.h"
+#include "service/results/field_verdict.h"
 #include "service/results/parameter.h"
 #include "service/results/reduction.h"
 #include "service/results/report_input.h"
@@ -81,6 +82,7 @@ absl::Status DescribeSteps(const Findings& found, const capture::RecordingHeader
   *result.mutable_activation() = DescribeActivation(found.activation, found.levels.series);
   EYEBOX_ASSIGN_OR_RETURN(*result.mutable_activation()->mutable_field(),
                           DescribeField(found.field, found.levels, out));
+  EYEBOX_RETURN_IF_ERROR(AddFieldVerdict(found.levels, out, *result.mutable_activation()));
   EYEBOX_ASSIGN_OR_RETURN(
       *result.mutable_reduction(),
       DescribeReduction(reference.reduced, found.calibration, "reference level", out));

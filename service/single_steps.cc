@@ -16,6 +16,7 @@
 #include "optics/uniformity/uniformity_map.h"
 #include "service/results/activation.h"
 #include "service/results/cube.h"
+#include "service/results/field_verdict.h"
 #include "service/results/reduction.h"
 #include "service/results/uniformity.h"
 #include "service/steps/calibrate.h"
@@ -113,7 +114,7 @@ absl::StatusOr<v1::UniformityResult> Map(const SeriesChoice& choice,
 }
 
 absl::StatusOr<v1::ActivationResult> Fit(const SeriesChoice& choice,
-                                         const fit::ActivationOptions& options,
+                                         const fit::ActivationOptions& options, bool compare,
                                          const std::filesystem::path& folder,
                                          const Watcher& watcher) {
   EYEBOX_ASSIGN_OR_RETURN(const Bench bench, OpenBench(choice, watcher.Part(0, 0.4)));
@@ -127,6 +128,8 @@ absl::StatusOr<v1::ActivationResult> Fit(const SeriesChoice& choice,
                           fit::FitCommonExponent(levels.Field()));
   v1::ActivationResult result = DescribeActivation(activation, levels.series);
   EYEBOX_ASSIGN_OR_RETURN(*result.mutable_field(), DescribeField(field, levels, folder));
+  EYEBOX_RETURN_IF_ERROR(AddFieldVerdict(levels, folder, result));
+  if (compare) AddComparison(fit::CompareActivations(levels.series), result);
   result.mutable_warnings()->Add(levels.warnings.begin(), levels.warnings.end());
   if (watcher.progress) watcher.progress({1, "done"});
   return result;
@@ -149,17 +152,19 @@ absl::StatusOr<v1::UniformityResult> MapUniformity(const SeriesChoice& choice,
 
 absl::StatusOr<v1::ActivationResult> FitRecording(const SeriesChoice& choice,
                                                   const fit::ActivationOptions& options,
+                                                  bool compare,
                                                   const std::filesystem::path& folder,
                                                   const Watcher& watcher) {
-  return Located(choice.recording, Fit(choice, options, folder, watcher));
+  return Located(choice.recording, Fit(choice, options, compare, folder, watcher));
 }
 
 absl::StatusOr<v1::ActivationResult> FitCsv(const std::filesystem::path& file,
-                                            const fit::ActivationOptions& options) {
+                                            const fit::ActivationOptions& options, bool compare) {
   EYEBOX_ASSIGN_OR_RETURN(const fit::LevelSeries series, fit::ReadLevelSeriesCsv(file));
   EYEBOX_ASSIGN_OR_RETURN(const fit::ActivationChoice choice,
                           fit::ChooseActivation(series, options));
   v1::ActivationResult result = DescribeActivation(choice, series);
+  if (compare) AddComparison(fit::CompareActivations(series), result);
   result.set_source(file.filename().string());
   return result;
 }

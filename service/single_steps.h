@@ -34,16 +34,18 @@ absl::StatusOr<v1::UniformityResult> MapUniformity(const SeriesChoice& choice,
                                                    const std::filesystem::path& folder,
                                                    const Watcher& watcher);
 
-// Activation at the reference point and over the field.
+// Activation at the reference point and over the field, and whether one exponent serves it.
+// `compare`: with the table of all models under all weightings, likewise below.
 absl::StatusOr<v1::ActivationResult> FitRecording(const SeriesChoice& choice,
                                                   const fit::ActivationOptions& options,
+                                                  bool compare,
                                                   const std::filesystem::path& folder,
                                                   const Watcher& watcher);
 
 // A series measured elsewhere. Errors: NotFound, InvalidArgument (a flat line included),
 // FailedPrecondition (it cannot be fitted).
 absl::StatusOr<v1::ActivationResult> FitCsv(const std::filesystem::path& file,
-                                            const fit::ActivationOptions& options);
+                                            const fit::ActivationOptions& options, bool compare);
 
 struct CubeRequest {
   v1::ActivationResult fit;

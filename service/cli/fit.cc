@@ -19,12 +19,15 @@ struct Options {
   std::optional<std::string> series;
   fit::ActivationOptions fit;
   std::string out;
+  bool all_models = false;
   bool json = false;
 };
 
 const std::map<std::string, fit::ActivationModel> kModels = {
     {"gamma_with_cutoff", fit::ActivationModel::kGammaWithCutoff},
-    {"power_offset", fit::ActivationModel::kPowerOffset}};
+    {"monotone_spline", fit::ActivationModel::kMonotoneSpline},
+    {"power_offset", fit::ActivationModel::kPowerOffset},
+    {"srgb_like", fit::ActivationModel::kSrgbLike}};
 const std::map<std::string, fit::Weighting> kWeightings = {
     {"measured_sigma", fit::Weighting::kMeasuredSigma},
     {"relative", fit::Weighting::kRelative},
@@ -44,6 +47,31 @@ absl::Status FitColours(const Options& options) {
   return absl::OkStatus();
 }
 
+void PrintComparison(const v1::ActivationResult& result) {
+  if (result.comparison().empty()) return;
+  std::printf("\n  %-18s %-14s %10s %14s %8s\n", "model", "weighting", "rms", "leave-one-out",
+              "AICc");
+  for (const v1::ModelFigure& figure : result.comparison()) {
+    std::printf("  %-18s %-14s", figure.model().c_str(), figure.weighting().c_str());
+    if (!figure.failure().empty()) {
+      std::printf(" not fitted: %s\n", figure.failure().c_str());
+      continue;
+    }
+    std::printf(" %8.3f %% %12.3f %% %8.1f\n", 100 * figure.rms_relative(),
+                100 * figure.leave_one_out_rms_relative(), figure.aicc());
+  }
+}
+
+void PrintVerdict(const v1::CommonExponentResult& field) {
+  if (!field.has_verdict()) return;
+  std::printf("\n  %s\n", field.verdict().reason().c_str());
+  for (const v1::RegionExponent& region : field.verdict().regions()) {
+    std::printf("  region %d, %d: gamma %.4f +- %.4f, rms %s\n", region.row(), region.column(),
+                region.gamma(), region.gamma_sigma(),
+                report::Percent(region.rms_relative()).c_str());
+  }
+}
+
 absl::Status Run(const Options& options) {
   if (!options.csv.empty()) {
     EYEBOX_ASSIGN_OR_RETURN(const bool colours, fit::HoldsColours(options.csv));
@@ -52,14 +80,17 @@ absl::Status Run(const Options& options) {
   EYEBOX_ASSIGN_OR_RETURN(const v1::ActivationResult result,
                           options.csv.empty()
                               ? FitRecording({options.recording, options.series}, options.fit,
-                                             options.out, TerminalWatcher())
-                              : FitCsv(options.csv, options.fit));
+                                             options.all_models, options.out, TerminalWatcher())
+                              : FitCsv(options.csv, options.fit, options.all_models));
   PrintWarnings(result.warnings());
   if (options.json) return PrintJson(result);
   std::printf("  %s, weights %s: rms %s, leave-one-out rms %s\n", result.model().c_str(),
               result.weighting().c_str(), report::Percent(result.rms_relative()).c_str(),
               report::Percent(result.leave_one_out_rms_relative()).c_str());
   PrintParameters(result.parameters());
+  std::printf("  %s\n", result.choice_reason().c_str());
+  PrintVerdict(result.field());
+  PrintComparison(result);
   return absl::OkStatus();
 }
 
@@ -78,15 +109,20 @@ void AddFit(CLI::App& app, Work& work) {
         source->require_option(1);
         command.add_option("--series", options.series, "Series (default: the main or only one)");
         command
-            .add_option("--model", options.fit.model,
-                        "gamma_with_cutoff or power_offset (default: the better one)")
+            .add_option(
+                "--model", options.fit.model,
+                "power_offset, gamma_with_cutoff, srgb_like or monotone_spline (default: the "
+                "one that predicts best)")
             ->transform(CLI::CheckedTransformer(kModels));
         command
             .add_option("--weighting", options.fit.weighting,
                         "measured_sigma, relative or unweighted (default: measured sigmas where "
                         "there are any, else relative)")
             ->transform(CLI::CheckedTransformer(kWeightings));
-        command.add_option("--out", options.out, "Write the field's k and delta there as NPY");
+        command.add_option("--out", options.out,
+                           "Write the field's k, delta and gamma by region there as NPY");
+        command.add_flag("--all-models", options.all_models,
+                         "Add a table of every model under every weighting");
         command.add_flag("--json", options.json, "Print the result as JSON on stdout");
       },
       Run);

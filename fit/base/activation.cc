@@ -71,6 +71,7 @@ std::array<double, 4> Activation::LuminanceGradient(double drive) const {
   if (base.x <= 0) return {1, 0, 0, 0};
   const ToePower power = PowerOf(*this);
   const ToePower::Place place = Warped(*this, base);
+  if (place.y <= 0) return {1, 0, 0, 0};  // the warp of the smallest doubles may be 0
   const double base_by_cutoff = -base.one_minus_x / (1 - cutoff_drive);
   return {1, power.At(place), luminance_range * SlopeByBase(*this, base) * base_by_cutoff,
           luminance_range * power.ByGamma(place)};
@@ -85,8 +86,9 @@ double Activation::LuminanceByToe(double drive) const {
 std::vector<double> Activation::LuminanceByWarp(double drive) const {
   const Base base = BaseAt(*this, drive);
   if (base.x <= 0) return std::vector<double>(warp.Knots().size(), 0.0);
+  const ToePower::Place place = Warped(*this, base);
   std::vector<double> derivatives = warp.ByLogSlopes(base.x);
-  const double slope = luminance_range * PowerOf(*this).Slope(Warped(*this, base));
+  const double slope = place.y > 0 ? luminance_range * PowerOf(*this).Slope(place) : 0;
   for (double& derivative : derivatives) derivative *= slope;
   return derivatives;
 }

@@ -22,6 +22,46 @@ constexpr double kStill = 1e-13;  // relative step at which the search ends
 constexpr double kFirstDamping = 1e-3;
 constexpr double kMostDamping = 1e12;
 
+// One group as the search sees it.
+struct GroupRows {
+  std::vector<int> levels;
+  Eigen::VectorXd root_weights;  // [valid levels], of the levels
+  Eigen::VectorXd constant;      // root_weights scaled to length 1
+  // [rows, valid levels]: sqrt(level weight location weight) times luminance, less its part along
+  // `constant`; rows are locations or stand for them.
+  Eigen::MatrixXd rows;
+};
+
+Eigen::MatrixXd RowsOf(const MaskedStack& stack, const FieldWeights& weights,
+                       const MaskGroup& group, const VectorXd& root_weights) {
+  Eigen::MatrixXd rows(group.members.size(), group.levels.size());
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    const size_t location = group.members[i];
+    const double root_weight = std::sqrt(weights.locations[location]);
+    for (Eigen::Index k = 0; k < rows.cols(); ++k) {
+      const size_t place = group.levels[k] * stack.LocationCount() + location;
+      rows(i, k) = root_weight * root_weights[k] * stack.luminance[place];
+    }
+  }
+  return rows;
+}
+
+GroupRows Reduced(const MaskedStack& stack, const FieldWeights& weights, const MaskGroup& group) {
+  const auto levels = static_cast<Eigen::Index>(group.levels.size());
+  GroupRows reduced{group.levels, VectorXd(levels), {}, {}};
+  for (Eigen::Index k = 0; k < levels; ++k) {
+    reduced.root_weights[k] = std::sqrt(weights.levels[group.levels[k]]);
+  }
+  reduced.constant = reduced.root_weights.normalized();
+  reduced.rows = RowsOf(stack, weights, group, reduced.root_weights);
+  reduced.rows -= (reduced.rows * reduced.constant) * reduced.constant.transpose();
+  if (reduced.rows.rows() > levels) {
+    const Eigen::HouseholderQR<MatrixXd> qr(reduced.rows);
+    reduced.rows = MatrixXd(qr.matrixQR().topRows(levels).triangularView<Eigen::Upper>());
+  }
+  return reduced;
+}
+
 struct Shape {
   double gamma = 0;
   double cutoff = 0;
@@ -46,7 +86,7 @@ Columns ColumnsAt(std::span<const double> drives, const Shape& shape) {
 }
 
 // Of one group's levels, weighted, orthogonal to the constant.
-VectorXd Centred(const MaskGroup& group, const VectorXd& column) {
+VectorXd Centred(const GroupRows& group, const VectorXd& column) {
   VectorXd weighted(group.root_weights.size());
   for (Eigen::Index k = 0; k < weighted.size(); ++k) {
     weighted[k] = group.root_weights[k] * column[group.levels[k]];
@@ -60,11 +100,11 @@ VectorXd UnitOf(const VectorXd& centred) {
   return length > 0 ? VectorXd(centred / length) : VectorXd::Zero(centred.size());
 }
 
-double SumOfSquares(const std::vector<MaskGroup>& groups, std::span<const double> drives,
+double SumOfSquares(const std::vector<GroupRows>& groups, std::span<const double> drives,
                     const Shape& shape) {
   const Columns columns = ColumnsAt(drives, shape);
   double sum = 0;
-  for (const MaskGroup& group : groups) {
+  for (const GroupRows& group : groups) {
     const VectorXd unit = UnitOf(Centred(group, columns.h));
     // From the residuals: a difference of two sums would lose the digits that steps are judged by.
     sum += (group.rows - (group.rows * unit) * unit.transpose()).squaredNorm();
@@ -77,11 +117,11 @@ struct Normal {
   Vector2d downhill = Vector2d::Zero();  // minus the slope of half the sum of squares
 };
 
-Normal NormalAt(const std::vector<MaskGroup>& groups, std::span<const double> drives,
+Normal NormalAt(const std::vector<GroupRows>& groups, std::span<const double> drives,
                 const Shape& shape) {
   const Columns columns = ColumnsAt(drives, shape);
   Normal normal;
-  for (const MaskGroup& group : groups) {
+  for (const GroupRows& group : groups) {
     const VectorXd centred = Centred(group, columns.h);
     const double length = centred.norm();
     if (!(length > 0)) continue;
@@ -117,7 +157,7 @@ class Limits {
   double cutoff_max_ = 0;
 };
 
-Shape Scan(const std::vector<MaskGroup>& groups, std::span<const double> drives,
+Shape Scan(const std::vector<GroupRows>& groups, std::span<const double> drives,
            const SharedExponentOptions& options, const Limits& limits) {
   Shape best;
   double least = -1;
@@ -153,8 +193,12 @@ Vector2d StepFrom(const Normal& normal, const Shape& shape, bool with_cutoff, do
 
 }  // namespace
 
-ShapeOptimum SearchShape(const std::vector<MaskGroup>& groups, std::span<const double> drives,
+ShapeOptimum SearchShape(const MaskedStack& stack, const FieldWeights& weights,
+                         std::span<const MaskGroup> mask_groups,
                          const SharedExponentOptions& options) {
+  const std::span<const double> drives = stack.drives;
+  std::vector<GroupRows> groups;
+  for (const MaskGroup& group : mask_groups) groups.push_back(Reduced(stack, weights, group));
   const Limits limits(drives, options);
   Shape shape = Scan(groups, drives, options, limits);
   double sum = SumOfSquares(groups, drives, shape);
@@ -181,7 +225,7 @@ ShapeOptimum SearchShape(const std::vector<MaskGroup>& groups, std::span<const d
   }
   optimum.gamma = shape.gamma;
   optimum.cutoff_drive = shape.cutoff;
-  optimum.curvature = normal.curvature;
+  Eigen::Map<Matrix2d>(optimum.curvature.data()) = normal.curvature;
   return optimum;
 }
 

@@ -2,7 +2,7 @@
 #ifndef EYEBOX_FIT_FIELD_SHAPE_SEARCH_H_
 #define EYEBOX_FIT_FIELD_SHAPE_SEARCH_H_
 
-#include <Eigen/Core>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -15,16 +15,18 @@ struct ShapeOptimum {
   double cutoff_drive = 0;
   // Second derivatives of half the sum of squares by (gamma, v0), without the terms that the
   // residuals bring (Kaufman's approximation).
-  Eigen::Matrix2d curvature = Eigen::Matrix2d::Zero();
+  std::array<double, 4> curvature{};  // [2, 2]
   bool converged = false;
   int iterations = 0;
 };
 
 // A scan over the plane, then damped Gauss-Newton steps on the profile of the sum of squares
 // (variable projection) until they no longer move gamma and v0. v0 stays within 0 and the third
-// lowest drive from the top.
-ShapeOptimum SearchShape(const std::vector<MaskGroup>& groups, std::span<const double> drives,
-                         const SharedExponentOptions& options);
+// lowest drive from the top. All that a sum of squares needs of the locations of a group is Y^T Y,
+// so more of them than levels are replaced by the R of a QR decomposition: as many rows, the same
+// products, and none of the digits that squaring would cost.
+ShapeOptimum SearchShape(const MaskedStack& stack, const FieldWeights& weights,
+                         std::span<const MaskGroup> groups, const SharedExponentOptions& options);
 
 }  // namespace eyebox::fit
 

@@ -50,15 +50,14 @@ void FitMembers(const MaskedStack& stack, const FieldWeights& weights, const Mas
   const auto levels = static_cast<Eigen::Index>(group.levels.size());
   Eigen::MatrixXd basis(levels, 2);
   for (Eigen::Index k = 0; k < levels; ++k) {
-    basis(k, 0) = group.root_weights[k] * shape.H(stack.drives[group.levels[k]]);
-    basis(k, 1) = group.root_weights[k];
+    basis(k, 1) = std::sqrt(weights.levels[group.levels[k]]);
+    basis(k, 0) = basis(k, 1) * shape.H(stack.drives[group.levels[k]]);
   }
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(basis);
   for (const size_t location : group.members) {
     Eigen::VectorXd values(levels);
     for (Eigen::Index k = 0; k < levels; ++k) {
-      values[k] = group.root_weights[k] *
-                  stack.luminance[group.levels[k] * stack.LocationCount() + location];
+      values[k] = basis(k, 1) * stack.luminance[group.levels[k] * stack.LocationCount() + location];
     }
     const Eigen::Vector2d line = qr.solve(values);
     const double squares = weights.locations[location] * (values - basis * line).squaredNorm();
@@ -72,10 +71,11 @@ void FitMembers(const MaskedStack& stack, const FieldWeights& weights, const Mas
 void SetSigmas(const ShapeOptimum& optimum, bool with_cutoff, SharedExponentFit& fit) {
   const double variance = fit.weighted_sum_of_squares / fit.degrees_of_freedom;
   if (!with_cutoff) {
-    fit.gamma_sigma = std::sqrt(variance / optimum.curvature(0, 0));
+    fit.gamma_sigma = std::sqrt(variance / optimum.curvature[0]);
     return;
   }
-  const Eigen::Matrix2d covariance = variance * optimum.curvature.inverse();
+  const Eigen::Matrix2d curvature(optimum.curvature.data());
+  const Eigen::Matrix2d covariance = variance * curvature.inverse();
   fit.gamma_sigma = std::sqrt(covariance(0, 0));
   fit.cutoff_sigma = std::sqrt(covariance(1, 1));
   fit.gamma_cutoff_covariance = covariance(0, 1);
@@ -90,7 +90,7 @@ absl::Status CheckOptimum(const ShapeOptimum& optimum, const SharedExponentOptio
   }
   const double gamma = optimum.gamma;
   if (gamma > options.gamma_min * (1 + 1e-9) && gamma < options.gamma_max * (1 - 1e-9) &&
-      optimum.curvature(0, 0) > 0) {
+      optimum.curvature[0] > 0) {
     return absl::OkStatus();
   }
   return Rejected("common exponent",
@@ -180,7 +180,7 @@ absl::StatusOr<SharedExponentFit> FitSharedExponent(const MaskedStack& stack,
                                  " valid readings leave no degree of freedom"),
                     "check the mask, or measure more levels");
   }
-  const ShapeOptimum optimum = SearchShape(groups, stack.drives, options);
+  const ShapeOptimum optimum = SearchShape(stack, weights, groups, options);
   EYEBOX_RETURN_IF_ERROR(CheckOptimum(optimum, options));
   fit.gamma = optimum.gamma;
   fit.cutoff_drive = optimum.cutoff_drive;

@@ -28,12 +28,27 @@ GlareModel::GlareModel(const GlareSeries& series, const ScatterFitOptions& optio
   if (!options_.instrument.has_value()) return;
   const optics::RadialWeight first(options_.instrument->kernel);
   for (const GlareReading& reading : series_.readings) {
-    for (const double radius : {reading.diameter_deg / 2, series_.field_radius_deg}) {
+    std::vector<double> radii = {reading.diameter_deg / 2, series_.field_radius_deg};
+    for (const FieldRing& ring : series_.field) radii.push_back(ring.outer_radius_deg);
+    for (const double radius : radii) {
       const DiskKey key{radius, reading.offset_deg};
       if (after_instrument_.contains(key)) continue;
       after_instrument_.emplace(key, optics::SecondScatterer(first, {key.first, key.second}));
     }
   }
+}
+
+// Disks of falling brightness, laid over each other: each ring less the next over all within it.
+double GlareModel::LightIn(const optics::RadialWeight& weight, const DiskKey& disk) const {
+  if (series_.field.empty()) return EnergyIn(weight, disk);
+  double light = 0;
+  for (size_t k = 0; k < series_.field.size(); ++k) {
+    const auto [outer, relative] = series_.field[k];
+    if (outer >= disk.first) return light + relative * EnergyIn(weight, disk);
+    const double next = k + 1 < series_.field.size() ? series_.field[k + 1].relative : 0;
+    if (relative != next) light += (relative - next) * EnergyIn(weight, {outer, disk.second});
+  }
+  return light;
 }
 
 std::vector<int> GlareModel::Free() const {
@@ -105,8 +120,12 @@ std::vector<GlareShares> GlareModel::Shares(const optics::ScatterKernel& kernel)
   shares.reserve(series_.readings.size());
   for (const GlareReading& reading : series_.readings) {
     const auto [field, is_new] = field_energy.try_emplace(reading.offset_deg);
-    if (is_new) field->second = EnergyIn(weight, {series_.field_radius_deg, reading.offset_deg});
-    const double disk = EnergyIn(weight, {reading.diameter_deg / 2, reading.offset_deg});
+    if (is_new) {
+      const double whole =
+          series_.field.empty() ? series_.field_radius_deg : series_.field.back().outer_radius_deg;
+      field->second = LightIn(weight, {whole, reading.offset_deg});
+    }
+    const double disk = LightIn(weight, {reading.diameter_deg / 2, reading.offset_deg});
     const double rest = std::max(field->second - disk, 0.0);
     const bool bright = reading.pattern == GlarePattern::kBrightDisk;
     shares.push_back(bright ? GlareShares{disk, rest} : GlareShares{rest, disk});

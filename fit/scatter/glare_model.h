@@ -68,6 +68,8 @@ class GlareModel {
  private:
   using DiskKey = std::pair<double, double>;  // radius, offset
   double EnergyIn(const optics::RadialWeight& weight, const DiskKey& disk) const;
+  // The same of light that varies as the series' field does; radius as if it were even.
+  double LightIn(const optics::RadialWeight& weight, const DiskKey& disk) const;
 
   GlareSeries series_;
   ScatterFitOptions options_;

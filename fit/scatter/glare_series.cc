@@ -11,6 +11,20 @@ namespace {
 
 bool IsAngle(double value) { return value >= 0 && std::isfinite(value); }
 
+absl::Status CheckField(const GlareSeries& series) {
+  double inner = 0;
+  for (size_t i = 0; i < series.field.size(); ++i) {
+    const auto [outer, relative] = series.field[i];
+    if (!(outer > inner && std::isfinite(outer) && relative >= 0 && std::isfinite(relative))) {
+      return BadInput(absl::StrCat(series.source, ", ring ", i + 1, " of the field"),
+                      absl::StrCat("outer radius ", outer, " deg, relative luminance ", relative),
+                      "give rising radii and luminances of at least 0");
+    }
+    inner = outer;
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 absl::Status GlareSeries::Validate() const {
@@ -22,6 +36,7 @@ absl::Status GlareSeries::Validate() const {
     return BadInput(source, absl::StrCat("field radius ", field_radius_deg, " deg"),
                     "give the radius of the display's field, above 0");
   }
+  EYEBOX_RETURN_IF_ERROR(CheckField(*this));
   for (size_t i = 0; i < readings.size(); ++i) {
     const GlareReading& reading = readings[i];
     const std::string where = absl::StrCat(source, ", glare reading ", i + 1);

@@ -25,14 +25,23 @@ struct GlareReading {
   double luminance_sigma = 0;  // standard uncertainty, without the scale's
 };
 
+// A ring of the display around the disk's centre, from the ring before to `outer_radius_deg`.
+struct FieldRing {
+  double outer_radius_deg = 0;
+  double relative = 1;  // mean of g over it, 1 where the spot looks at large disks
+};
+
 struct GlareSeries {
   std::vector<GlareReading> readings;
   double field_radius_deg = 50;  // of the display, around the disk's centre
-  std::string luminance_unit;    // "cd/m2" or "relative"
-  std::string source;            // a file or recording, for messages
+  // How the display's own luminance varies, rings by rising radius; dark beyond the last. Empty:
+  // even up to field_radius_deg.
+  std::vector<FieldRing> field = {};
+  std::string luminance_unit;  // "cd/m2" or "relative"
+  std::string source;          // a file or recording, for messages
 
   // Errors: InvalidArgument naming source and reading (fewer than 4, an angle negative or not
-  // finite, luminance not finite, sigma not above 0).
+  // finite, luminance not finite, sigma not above 0) or ring.
   absl::Status Validate() const;
   double LargestLuminance() const;
 };

@@ -14,6 +14,7 @@ struct RingSums {
   double value = 0;
   double variance = 0;
   double square_deg = 0;
+  double inverse_square = 0;  // 1/deg2
   size_t pixels = 0;
 };
 
@@ -46,6 +47,7 @@ absl::StatusOr<std::vector<RadialReading>> MeasureRadialProfile(const MeasuredIm
       ring.value += image.value.at(x, y);
       ring.variance += image.variance.at(x, y);
       ring.square_deg += radius * radius;
+      ring.inverse_square += 1 / (radius * radius);
       ++ring.pixels;
     }
   }
@@ -53,8 +55,8 @@ absl::StatusOr<std::vector<RadialReading>> MeasureRadialProfile(const MeasuredIm
   for (const RingSums& ring : rings) {
     if (ring.pixels == 0) continue;
     const auto count = static_cast<double>(ring.pixels);
-    readings.push_back({std::sqrt(ring.square_deg / count), ring.value / count,
-                        std::sqrt(ring.variance) / count, ring.pixels});
+    readings.push_back({std::sqrt(ring.square_deg / count), std::sqrt(count / ring.inverse_square),
+                        ring.value / count, std::sqrt(ring.variance) / count, ring.pixels});
   }
   if (!readings.empty()) return readings;
   return Rejected("radial profile", absl::StrCat("no valid pixel around (", x_px, ", ", y_px, ")"),

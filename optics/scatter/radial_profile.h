@@ -13,8 +13,11 @@ namespace eyebox::optics {
 
 struct RadialReading {
   double offset_deg = 0;  // root mean square distance of the pixels from the centre
-  double value = 0;       // mean, unit of the image
-  double sigma = 0;       // of noise alone
+  // (mean of 1 / distance^2)^(-1/2): where a tail that falls as its inverse square or a little
+  // faster has the mean of the ring; 0 if the ring holds the centre itself.
+  double tail_offset_deg = 0;
+  double value = 0;  // mean, unit of the image
+  double sigma = 0;  // of noise alone
   size_t pixels = 0;
 };
 

@@ -25,12 +25,16 @@ std::optional<double> HeldOutChi2(const std::vector<NormalEquations>& folds,
     NormalEquations rest = all;
     rest -= fold;
     if (rest.pixels < static_cast<size_t>(terms)) return std::nullopt;
-    const Eigen::LDLT<Eigen::MatrixXd> factors(rest.matrix.topLeftCorner(terms, terms));
+    const auto n = static_cast<Eigen::Index>(rest.right_side.size());
+    const Eigen::Map<const Eigen::MatrixXd> matrix(rest.matrix.data(), n, n);
+    const Eigen::Map<const Eigen::VectorXd> right_side(rest.right_side.data(), n);
+    const Eigen::LDLT<Eigen::MatrixXd> factors(matrix.topLeftCorner(terms, terms));
     if (factors.info() != Eigen::Success || !factors.isPositive() ||
         factors.rcond() < kLeastCondition) {
       return std::nullopt;
     }
-    chi2 += std::max(fold.Chi2(factors.solve(rest.right_side.head(terms))), 0.0);
+    const Eigen::VectorXd solution = factors.solve(right_side.head(terms));
+    chi2 += std::max(fold.Chi2({solution.data(), static_cast<size_t>(terms)}), 0.0);
   }
   return chi2 / static_cast<double>(all.pixels);
 }

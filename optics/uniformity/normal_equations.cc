@@ -1,5 +1,9 @@
 #include "optics/uniformity/normal_equations.h"
 
+#include <Eigen/Core>
+#include <algorithm>
+#include <functional>
+
 namespace eyebox::optics {
 namespace {
 
@@ -46,12 +50,11 @@ void AddRow(const RowSums& row, const SideValues& side, const FieldBasis& basis,
   for (size_t i = 0; i < terms.size(); ++i) {
     const double of_i = factor(terms[i][1]);
     if (of_i == 0) continue;
-    sums.right_side(static_cast<Eigen::Index>(i)) += row.value(terms[i][0]) * of_i;
+    sums.right_side[i] += row.value(terms[i][0]) * of_i;
     for (size_t j = 0; j < terms.size(); ++j) {
       const double of_j = factor(terms[j][1]);
       if (of_j == 0) continue;
-      sums.matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) +=
-          row.weight(terms[i][0], terms[j][0]) * of_i * of_j;
+      sums.matrix[i * terms.size() + j] += row.weight(terms[i][0], terms[j][0]) * of_i * of_j;
     }
   }
   sums.squares += row.squares;
@@ -61,33 +64,38 @@ void AddRow(const RowSums& row, const SideValues& side, const FieldBasis& basis,
 }  // namespace
 
 NormalEquations& NormalEquations::operator+=(const NormalEquations& other) {
-  matrix += other.matrix;
-  right_side += other.right_side;
+  std::ranges::transform(matrix, other.matrix, matrix.begin(), std::plus());
+  std::ranges::transform(right_side, other.right_side, right_side.begin(), std::plus());
   squares += other.squares;
   pixels += other.pixels;
   return *this;
 }
 
 NormalEquations& NormalEquations::operator-=(const NormalEquations& other) {
-  matrix -= other.matrix;
-  right_side -= other.right_side;
+  std::ranges::transform(matrix, other.matrix, matrix.begin(), std::minus());
+  std::ranges::transform(right_side, other.right_side, right_side.begin(), std::minus());
   squares -= other.squares;
   pixels -= other.pixels;
   return *this;
 }
 
-double NormalEquations::Chi2(const Eigen::VectorXd& coefficients) const {
-  const auto n = coefficients.size();
-  return squares - 2 * coefficients.dot(right_side.head(n)) +
-         coefficients.dot(matrix.topLeftCorner(n, n) * coefficients);
+double NormalEquations::Chi2(std::span<const double> coefficients) const {
+  const size_t n = right_side.size();
+  double chi2 = squares;
+  for (size_t i = 0; i < coefficients.size(); ++i) {
+    double row = -2 * right_side[i];
+    for (size_t j = 0; j < coefficients.size(); ++j) row += matrix[i * n + j] * coefficients[j];
+    chi2 += coefficients[i] * row;
+  }
+  return chi2;
 }
 
 std::vector<NormalEquations> SumImage(const MeasuredImage& image, const FieldBasis& basis,
                                       int folds) {
-  const auto n = static_cast<Eigen::Index>(basis.Terms().size());
+  const size_t n = basis.Terms().size();
   const auto [width, height] = image.size();
-  std::vector<NormalEquations> sums(folds,
-                                    {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), 0, 0});
+  std::vector<NormalEquations> sums(
+      folds, {std::vector<double>(n * n, 0), std::vector<double>(n, 0), 0, 0});
   std::vector<SideValues> columns;
   for (int x = 0; x < width; ++x) columns.push_back(basis.AlongX(x));
   std::vector<RowSums> rows(folds, RowSums(basis.CountX()));

@@ -2,8 +2,8 @@
 #ifndef EYEBOX_OPTICS_UNIFORMITY_NORMAL_EQUATIONS_H_
 #define EYEBOX_OPTICS_UNIFORMITY_NORMAL_EQUATIONS_H_
 
-#include <Eigen/Core>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "optics/reduce/measured_image.h"
@@ -13,15 +13,15 @@ namespace eyebox::optics {
 
 // Over valid pixels, each with the weight 1/variance.
 struct NormalEquations {
-  Eigen::MatrixXd matrix;      // sum of w basis_i basis_j
-  Eigen::VectorXd right_side;  // sum of w value basis_i
-  double squares = 0;          // sum of w value^2
+  std::vector<double> matrix;      // [n, n], symmetric: sum of w basis_i basis_j
+  std::vector<double> right_side;  // [n]: sum of w value basis_i
+  double squares = 0;              // sum of w value^2
   size_t pixels = 0;
 
   NormalEquations& operator+=(const NormalEquations& other);
   NormalEquations& operator-=(const NormalEquations& other);
   // Sum of w (value - model)^2 of the first coefficients of the basis.
-  double Chi2(const Eigen::VectorXd& coefficients) const;
+  double Chi2(std::span<const double> coefficients) const;
 };
 
 // One for each of `folds` classes of pixels that are spread evenly over the image; their sum is

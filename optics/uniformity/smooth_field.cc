@@ -124,19 +124,22 @@ absl::StatusOr<SmoothField> FitSmoothField(const MeasuredImage& image, FieldMode
                     absl::StrCat(equations.pixels, " valid pixels for ", n, " coefficients"),
                     "record exposures with more valid pixels or lower the order");
   }
-  const Eigen::LDLT<Eigen::MatrixXd> factors(equations.matrix);
+  const auto count = static_cast<Eigen::Index>(n);
+  const Eigen::LDLT<Eigen::MatrixXd> factors(
+      Eigen::Map<const Eigen::MatrixXd>(equations.matrix.data(), count, count));
   if (factors.info() != Eigen::Success || !factors.isPositive() || factors.rcond() < 1e-13) {
     return Rejected("smooth field", "the valid pixels do not determine it",
                     "lower the order, or record more of the field");
   }
-  const Eigen::VectorXd solution = factors.solve(equations.right_side);
+  const Eigen::VectorXd solution =
+      factors.solve(Eigen::Map<const Eigen::VectorXd>(equations.right_side.data(), count));
   Eigen::MatrixXd covariance = factors.solve(Eigen::MatrixXd::Identity(n, n));
   SmoothField field;
   field.size = image.size();
   field.model = model;
   field.order = order;
   field.coefficients.assign(solution.begin(), solution.end());
-  const double chi2 = std::max(equations.Chi2(solution), 0.0);
+  const double chi2 = std::max(equations.Chi2(field.coefficients), 0.0);
   field.reduced_chi2 = equations.pixels > n ? chi2 / static_cast<double>(equations.pixels - n) : 0;
   covariance *= std::max(field.reduced_chi2, 1.0);
   field.covariance.assign(covariance.data(), covariance.data() + covariance.size());

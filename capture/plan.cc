@@ -57,6 +57,25 @@ absl::Status CheckReference(const PlanOptions& options) {
                   "give a drive value above 0 and up to 1");
 }
 
+absl::Status CheckDiameters(std::string_view field, const std::vector<double>& diameters_deg) {
+  for (const double diameter : diameters_deg) {
+    if (diameter > 0 && diameter < 180) continue;
+    return BadInput("PlanOptions." + std::string(field), "holds " + std::to_string(diameter),
+                    "give diameters above 0 and below 180 deg");
+  }
+  return absl::OkStatus();
+}
+
+absl::Status CheckDisks(const PlanOptions& options) {
+  EYEBOX_RETURN_IF_ERROR(CheckDiameters("disk_diameters_deg", options.disk_diameters_deg));
+  EYEBOX_RETURN_IF_ERROR(
+      CheckDiameters("black_disk_diameters_deg", options.black_disk_diameters_deg));
+  EYEBOX_RETURN_IF_ERROR(CheckCount("disk_repeats", options.disk_repeats, 1, 65536));
+  if (options.disk_drive > 0 && options.disk_drive <= 1) return absl::OkStatus();
+  return BadInput("PlanOptions.disk_drive", "is " + std::to_string(options.disk_drive),
+                  "give a drive value above 0 and up to 1");
+}
+
 // Fisher & Yates.
 std::vector<int> ShuffledLevels(int levels, uint64_t seed) {
   std::vector<int> order(static_cast<size_t>(levels));
@@ -115,9 +134,29 @@ class PlanBuilder {
     if (every > 0) AddReference();
   }
 
+  void AddDisks() {
+    if (options_.disk_diameters_deg.empty() && options_.black_disk_diameters_deg.empty()) return;
+    AddGlareStimulus(StimulusPattern::kFullField, 0, 0);
+    AddGlareStimulus(StimulusPattern::kFullField, 0, options_.disk_drive);
+    for (const double diameter : options_.disk_diameters_deg) {
+      AddGlareStimulus(StimulusPattern::kDisk, diameter, options_.disk_drive);
+    }
+    for (const double diameter : options_.black_disk_diameters_deg) {
+      AddGlareStimulus(StimulusPattern::kBlackDisk, diameter, options_.disk_drive);
+    }
+  }
+
   CapturePlan Finish() { return std::move(plan_); }
 
  private:
+  void AddGlareStimulus(StimulusPattern pattern, double diameter_deg, double drive) {
+    CaptureSpec spec;
+    spec.series = kGlareSeries;
+    spec.stimulus = {pattern, diameter_deg, DriveRgb{drive, drive, drive}};
+    spec.repeats = options_.disk_repeats;
+    AddBracket(spec);
+  }
+
   void AddReference() {
     CaptureSpec reference;
     reference.series = kReferenceSeries;
@@ -146,6 +185,7 @@ absl::Status PlanOptions::Validate() const {
   EYEBOX_RETURN_IF_ERROR(CheckCount("dark_repeats", dark_repeats, 1, 65536));
   EYEBOX_RETURN_IF_ERROR(CheckCount("flat_repeats", flat_repeats, 0, 65536));
   EYEBOX_RETURN_IF_ERROR(CheckReference(*this));
+  EYEBOX_RETURN_IF_ERROR(CheckDisks(*this));
   return CheckFlats(*this);
 }
 
@@ -155,6 +195,7 @@ absl::StatusOr<CapturePlan> MakeGreyPlan(const PlanOptions& options) {
   builder.AddDarks();
   builder.AddFlats();
   builder.AddLevelsAndReferences(ShuffledLevels(options.levels, options.seed));
+  builder.AddDisks();
   return builder.Finish();
 }
 

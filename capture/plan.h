@@ -12,6 +12,7 @@
 namespace eyebox::capture {
 
 inline constexpr const char* kReferenceSeries = "reference";
+inline constexpr const char* kGlareSeries = "glare";
 
 // Defaults fit "sim:rift-s-like" and displays like it (peak 59 cd/m2, black 0.19 cd/m2).
 struct PlanOptions {
@@ -34,6 +35,12 @@ struct PlanOptions {
   int reference_every = 0;  // levels; 0: no reference
   double reference_drive = 0.5;
   int reference_repeats = 4;
+  // Disks that show how light scatters: bright on drive 0, black on bright. Any of them brings the
+  // black and the bright full field too, after the levels, as the series kGlareSeries.
+  std::vector<double> disk_diameters_deg = {};
+  std::vector<double> black_disk_diameters_deg = {};
+  double disk_drive = 1;
+  int disk_repeats = 4;
 
   // Errors: InvalidArgument (names the field and what it may be).
   absl::Status Validate() const;
@@ -42,7 +49,7 @@ struct PlanOptions {
 // Darks of every exposure, flats at every exposure (reduction masks what saturates), then grey full
 // fields: the levels in random order, so that drift of display or camera does not look like a
 // slope, each with the whole bracket, shortest exposure first. Level i has level_id i. References
-// between them are the series kReferenceSeries.
+// between them are the series kReferenceSeries; disks follow, as given.
 // Errors: those of Validate().
 absl::StatusOr<CapturePlan> MakeGreyPlan(const PlanOptions& options);
 

@@ -147,5 +147,28 @@ TEST(GreyPlan, RefusesOptionsByName) {
               HasSubstr("flat_luminance_relative_sigma"));
 }
 
+TEST(GreyPlan, DisksFollowTheLevelsWithTheFieldsThatTheyNeed) {
+  const auto plan = MakeGreyPlan({.levels = 2,
+                                  .exposures_s = {0.1},
+                                  .disk_diameters_deg = {1, 5},
+                                  .black_disk_diameters_deg = {2},
+                                  .disk_drive = 0.8});
+  ASSERT_TRUE(plan.ok()) << plan.status();
+  std::vector<Stimulus> glare;
+  for (const CaptureSpec& spec : plan->captures) {
+    if (spec.series == kGlareSeries) glare.push_back(spec.stimulus);
+  }
+  const DriveRgb bright = {0.8, 0.8, 0.8};
+  const std::vector<Stimulus> expected = {{StimulusPattern::kFullField, 0, DriveRgb{0, 0, 0}},
+                                          {StimulusPattern::kFullField, 0, bright},
+                                          {StimulusPattern::kDisk, 1, bright},
+                                          {StimulusPattern::kDisk, 5, bright},
+                                          {StimulusPattern::kBlackDisk, 2, bright}};
+  EXPECT_EQ(glare, expected);
+  EXPECT_EQ(plan->captures.back().series, kGlareSeries);
+  EXPECT_THAT(std::string(MakeGreyPlan({.disk_diameters_deg = {0}}).status().message()),
+              HasSubstr("disk_diameters_deg"));
+}
+
 }  // namespace
 }  // namespace eyebox::capture

@@ -33,16 +33,32 @@ absl::Status CheckStimulus(const Stimulus& stimulus) {
   return absl::OkStatus();
 }
 
-// Paints the pixels whose centre lies within the disk.
+// Share of a pixel that lies within the radius, in eighths of the pixel; exact but at the edge.
+double Covered(double x_px, double y_px, double radius_px) {
+  const double gap_px = radius_px - std::hypot(x_px, y_px);
+  if (std::abs(gap_px) > std::numbers::sqrt2 / 2) return gap_px > 0 ? 1 : 0;
+  constexpr int kSamples = 8;
+  int inside = 0;
+  for (int j = 0; j < kSamples; ++j) {
+    for (int i = 0; i < kSamples; ++i) {
+      const double u = x_px + (i + 0.5) / kSamples - 0.5;
+      const double v = y_px + (j + 0.5) / kSamples - 0.5;
+      inside += std::hypot(u, v) <= radius_px ? 1 : 0;
+    }
+  }
+  return static_cast<double>(inside) / (kSamples * kSamples);
+}
+
+// Pixels at the edge take the share of the luminance that the disk covers of them.
 void PaintDisk(const PinholeGeometry& geometry, double diameter_deg, double luminance_cd_m2,
                Image<double>& scene) {
   const double radius_px =
       geometry.focal_length_px * std::tan(diameter_deg / 2 * std::numbers::pi / 180);
   for (int y = 0; y < scene.size().height_px; ++y) {
     for (int x = 0; x < scene.size().width_px; ++x) {
-      const double distance_px =
-          std::hypot(x - geometry.principal_x_px, y - geometry.principal_y_px);
-      if (distance_px <= radius_px) scene.at(x, y) = luminance_cd_m2;
+      const double covered =
+          Covered(x - geometry.principal_x_px, y - geometry.principal_y_px, radius_px);
+      scene.at(x, y) += covered * (luminance_cd_m2 - scene.at(x, y));
     }
   }
 }

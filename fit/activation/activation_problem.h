@@ -72,10 +72,11 @@ absl::StatusOr<ActivationSolution> SolveModel(const ActivationProblem& problem,
                                               std::span<const Activation> starts, double floor);
 
 // Covariance of the parameters, [parameters, parameters] row-major, zeros for one that is held, for
-// readings whose sigma is 1 / root_weight. Of the two stages of a spline, each passes its readings'
-// errors on to the other. A parameter that ended at its bound counts as free: its sigma says how
-// far the readings alone would let it leave the bound, and the others carry their share of that.
-// Errors: FailedPrecondition (the readings do not determine the parameters).
+// readings whose sigma is 1 / root_weight. Of the two stages of a spline, the first passes its
+// readings' errors on to the second; linear, so it holds where the gamma fit leaves a few percent.
+// A parameter that ended at its bound counts as free: its sigma says how far the readings alone
+// would let it leave the bound, and the others carry their share of that. Errors:
+// FailedPrecondition (the readings do not determine the parameters).
 absl::StatusOr<std::vector<double>> ActivationCovariance(const ActivationProblem& problem,
                                                          const ActivationSolution& solution);
 

@@ -1,0 +1,257 @@
+// How often the stated 95 % intervals cover the truth, over simulated recordings: luminance at
+// random pixels, g raw and smooth, the parameters of w, the luminance scale.
+// `measurement_coverage [RECORDINGS]`, 200 unless given. Exit 1 where a row lies further from 95 %
+// than 2 % and chance (3 standard errors) allow.
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "capture/base/random.h"
+#include "capture/camera/sim/display.h"
+#include "fit/scatter/fit_with_field.h"
+#include "fit/scatter/read_disk.h"
+#include "optics/reduce/flat_variance.h"
+#include "optics/scatter/remove_glare.h"
+#include "optics/uniformity/level_independence.h"
+#include "optics/uniformity/uniformity_map.h"
+#include "tests/tools/coverage/simulated_measurement.h"
+
+namespace eyebox {
+namespace {
+
+constexpr double kInterval = 1.959964;  // standard deviations on either side
+constexpr int kPixels = 5;              // random ones of each recording
+constexpr int kRepeats = 4;
+constexpr double kDegPerPx = 0.1;
+constexpr double kDiskDiameters_deg[] = {0.4, 0.7, 1.0, 1.5, 2.5, 4.0, 6.0};
+constexpr double kBlackDiameters_deg[] = {1.0, 2.0, 4.0};
+constexpr double kLevels[] = {0.4, 0.7};  // beside white, for level independence
+constexpr int kBlockPx = 8;
+
+// The mean over a recording's own samples counts once: what they share makes them cover together.
+struct Row {
+  double recordings = 0;
+  double share = 0;
+  double share_square = 0;
+  double pull_square = 0;
+  double samples = 0;
+
+  void Add(const std::vector<double>& pulls) {
+    double covered = 0;
+    for (const double pull : pulls) {
+      covered += std::abs(pull) <= kInterval ? 1.0 / static_cast<double>(pulls.size()) : 0;
+      pull_square += pull * pull;
+    }
+    samples += static_cast<double>(pulls.size());
+    ++recordings;
+    share += covered;
+    share_square += covered * covered;
+  }
+  double Mean() const { return share / recordings; }
+  double StandardError() const {
+    const double spread = share_square / recordings - Mean() * Mean();
+    const double binomial = 0.95 * 0.05 / samples;  // where all recordings cover alike
+    return std::sqrt(std::max(spread / recordings, binomial));
+  }
+};
+
+using Table = std::map<std::string, Row>;
+
+Stimulus Show(StimulusPattern pattern, double diameter_deg, double drive) {
+  return {pattern, diameter_deg, DriveRgb{drive, drive, drive}};
+}
+
+struct Sample {
+  int x = 0;
+  int y = 0;
+};
+
+std::vector<Sample> RandomPixels(ImageSize size, uint64_t seed) {
+  RandomStream random({seed, 5});
+  std::vector<Sample> pixels;
+  for (int k = 0; k < kPixels; ++k) {
+    pixels.push_back({static_cast<int>(random.Below(size.width_px)),
+                      static_cast<int>(random.Below(size.height_px))});
+  }
+  return pixels;
+}
+
+void JudgeLuminance(const optics::LuminanceImage& white, const Image<double>& truth,
+                    double scale_error, const std::vector<Sample>& pixels, Table& table) {
+  std::vector<double> whole, noise;
+  double measured = 0, true_sum = 0;
+  for (size_t i = 0; i < truth.pixels().size(); ++i) {
+    if (white.image.mask.pixels()[i] != 0) continue;
+    measured += white.image.value.pixels()[i];
+    true_sum += truth.pixels()[i];
+  }
+  for (const auto& [x, y] : pixels) {
+    if (white.image.mask.at(x, y) != 0) continue;
+    const double value = white.image.value.at(x, y);
+    const double variance = white.image.variance.at(x, y);
+    const double scale = white.scale_relative_sigma * value;
+    whole.push_back((value - truth.at(x, y)) / std::sqrt(variance + scale * scale));
+    noise.push_back((value - truth.at(x, y) * scale_error) / std::sqrt(variance));
+  }
+  table["luminance, with the scale"].Add(whole);
+  table["luminance, apart from the scale"].Add(noise);
+  table["luminance scale"].Add({(measured / true_sum - 1) / white.scale_relative_sigma});
+}
+
+// `truth` is 1 on average where the map is.
+void JudgeG(const std::string& name, const optics::UniformityMap& map, const Image<double>& truth,
+            const std::vector<Sample>& pixels, Table& table) {
+  const auto reference = optics::UniformityOptions().reference_radius_fraction * 96;
+  double disk = 0, count = 0;
+  for (int y = 0; y < 96; ++y) {
+    for (int x = 0; x < 96; ++x) {
+      if (std::hypot(x - 47.5, y - 47.5) > reference || map.raw.mask.at(x, y) != 0) continue;
+      disk += truth.at(x, y);
+      ++count;
+    }
+  }
+  const double middle =
+      (truth.at(47, 47) + truth.at(48, 47) + truth.at(47, 48) + truth.at(48, 48)) / 4;
+  std::vector<double> raw, smooth, alternative;
+  for (const auto& [x, y] : pixels) {
+    if (map.raw.mask.at(x, y) != 0) continue;
+    raw.push_back((map.raw.value.at(x, y) - truth.at(x, y) / (disk / count)) /
+                  std::sqrt(map.raw.variance.at(x, y)));
+    const double g = truth.at(x, y) / middle;
+    smooth.push_back((map.smooth.At(x, y) - g) / map.smooth.SigmaAt(x, y));
+    alternative.push_back((map.alternative->At(x, y) - g) / map.alternative->SigmaAt(x, y));
+  }
+  table[name + ", raw"].Add(raw);
+  table[name + ", smooth"].Add(smooth);
+  table[name + ", smooth, other kind"].Add(alternative);
+}
+
+absl::StatusOr<fit::FieldFit> FitW(SimulatedMeasurement& measurement,
+                                   const optics::LuminanceImage& white) {
+  const fit::DiskAim aim{{47.5, 47.5}, kDegPerPx};
+  fit::GlareSeries series{{}, 8, "cd/m2", "simulated"};
+  const auto add = [&](const Stimulus& stimulus, fit::GlarePattern pattern) -> absl::Status {
+    const auto level = measurement.Measure(stimulus, kRepeats);
+    if (!level.ok()) return level.status();
+    const auto readings = fit::ReadDisk(level->luminance.image, measurement.calibration(), aim,
+                                        pattern, stimulus.diameter_deg);
+    if (!readings.ok()) return readings.status();
+    series.readings.insert(series.readings.end(), readings->begin(), readings->end());
+    return absl::OkStatus();
+  };
+  absl::Status status =
+      add(Show(StimulusPattern::kFullField, 0, 0), fit::GlarePattern::kBrightDisk);
+  for (const double diameter : kDiskDiameters_deg) {
+    status.Update(add(Show(StimulusPattern::kDisk, diameter, 1), fit::GlarePattern::kBrightDisk));
+  }
+  for (const double diameter : kBlackDiameters_deg) {
+    status.Update(
+        add(Show(StimulusPattern::kBlackDisk, diameter, 1), fit::GlarePattern::kBlackDisk));
+  }
+  const auto field =
+      fit::ReadDisk(white.image, measurement.calibration(), aim, fit::GlarePattern::kBlackDisk, 0);
+  status.Update(field.status());
+  if (!status.ok()) return status;
+  series.readings.push_back(field->front());
+  fit::FieldFitOptions options;
+  options.fit.reach_deg = 8;
+  options.most_rounds = 3;
+  return fit::FitScatterWithField(
+      series, {white, aim.axis, kDegPerPx, 1, optics::Surround::kContinued}, options);
+}
+
+void JudgeW(const fit::ScatterFit& fit, const capture::SimParameters& rig, Table& table) {
+  const double expected[] = {0, rig.scatter.tail_weight, rig.scatter.tail_scale_px * kDegPerPx,
+                             2 * rig.scatter.tail_beta};
+  for (int i = 1; i < 4; ++i) {
+    const fit::Parameter& parameter = fit.parameters[i];
+    table["w, " + parameter.name].Add({(parameter.value - expected[i]) / parameter.sigma});
+  }
+}
+
+absl::StatusOr<double> LevelPValue(SimulatedMeasurement& measurement,
+                                   const optics::LuminanceImage& white) {
+  std::vector<optics::LevelBlocks> levels;
+  const auto add = [&](double drive, const optics::LuminanceImage& image) {
+    levels.push_back(
+        {drive,
+         optics::Binned(optics::WithoutFlat(image.image, measurement.calibration()), kBlockPx)});
+  };
+  for (const double drive : kLevels) {
+    const auto level = measurement.Measure(Show(StimulusPattern::kFullField, 0, drive), kRepeats);
+    if (!level.ok()) return level.status();
+    add(drive, level->luminance);
+  }
+  add(1, white);
+  const auto test = optics::TestLevelIndependence(levels);
+  if (!test.ok()) return test.status();
+  return test->p_value;
+}
+
+absl::Status Judge(const capture::SimParameters& rig, uint64_t seed, Table& table, int& rejected) {
+  SimulatedMeasurement measurement(rig, seed);
+  if (auto status = measurement.Calibrate(); !status.ok()) return status;
+  const Stimulus stimulus = Show(StimulusPattern::kFullField, 0, 1);
+  const auto white = measurement.Measure(stimulus, kRepeats);
+  if (!white.ok()) return white.status();
+  const Image<double> seen = measurement.Truth(stimulus);
+  const auto pixels = RandomPixels(seen.size(), seed);
+  JudgeLuminance(white->luminance, seen, measurement.scale_error(), pixels, table);
+  const auto map = optics::MeasureUniformity(white->luminance);
+  if (!map.ok()) return map.status();
+  JudgeG("g as the camera sees it", *map, seen, pixels, table);
+  const auto w = FitW(measurement, white->luminance);
+  if (!w.ok()) return w.status();
+  JudgeW(w->fit, rig, table);
+  const auto clean = optics::MeasureUniformity(w->removal.luminance);
+  if (!clean.ok()) return clean.status();
+  JudgeG("g, scatter taken out", *clean, capture::Nonuniformity(rig.nonuniformity, seen.size()),
+         pixels, table);
+  const auto p_value = LevelPValue(measurement, white->luminance);
+  if (!p_value.ok()) return p_value.status();
+  rejected += *p_value < 0.05 ? 1 : 0;
+  return absl::OkStatus();
+}
+
+bool Print(const Table& table, int recordings, int rejected) {
+  std::printf("%-40s  %9s  %6s  %8s\n", "95 % interval of", "covers", "+-", "rms pull");
+  bool sound = true;
+  for (const auto& [name, row] : table) {
+    const double error = row.StandardError();
+    const bool holds = std::abs(row.Mean() - 0.95) <= 0.02 + 3 * error;
+    sound = sound && holds;
+    std::printf("%-40s  %7.1f %%  %4.1f %%  %8.2f%s\n", name.c_str(), 100 * row.Mean(), 100 * error,
+                std::sqrt(row.pull_square / row.samples), holds ? "" : "  <- fails");
+  }
+  std::printf("level independence rejected at 5 %%: %d of %d\n", rejected, recordings);
+  return sound;
+}
+
+int Main(int recordings) {
+  const capture::SimParameters rig = SmallRig();
+  Table table;
+  int rejected = 0;
+  int failed = 0;
+  for (int k = 0; k < recordings; ++k) {
+    const absl::Status status = Judge(rig, 1000 + static_cast<uint64_t>(k), table, rejected);
+    if (status.ok()) continue;
+    ++failed;
+    std::printf("recording %d: %s\n", k, std::string(status.message()).c_str());
+  }
+  return Print(table, recordings, rejected) && failed == 0 ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace eyebox
+
+int main(int argc, char** argv) {
+  const int recordings = argc > 1 ? std::atoi(argv[1]) : 200;
+  if (recordings < 1) {
+    std::fprintf(stderr, "measurement_coverage: give a number of recordings above 0\n");
+    return 2;
+  }
+  return eyebox::Main(recordings);
+}

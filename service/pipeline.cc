@@ -33,6 +33,7 @@
 #include "service/steps/calibrate.h"
 #include "service/steps/levels.h"
 #include "service/steps/record_plan.h"
+#include "service/steps/sensor.h"
 #include "service/steps/within.h"
 
 namespace eyebox::service {
@@ -49,10 +50,11 @@ struct Findings {
 };
 
 absl::StatusOr<Findings> Measure(capture::RecordingReader& recording, const RunOptions& options,
-                                 const Watcher& watcher) {
+                                 const std::filesystem::path& sensor, const Watcher& watcher) {
   Findings found;
   EYEBOX_ASSIGN_OR_RETURN(const std::string series, ChooseSeries(recording, std::nullopt));
-  EYEBOX_ASSIGN_OR_RETURN(found.calibration, CalibrateCamera(recording, watcher.Part(0, 0.4)));
+  EYEBOX_ASSIGN_OR_RETURN(found.calibration,
+                          CalibrateCamera(recording, watcher.Part(0, 0.4), sensor));
   EYEBOX_ASSIGN_OR_RETURN(
       found.levels, ReduceGreyLevels(recording, series, found.calibration, watcher.Part(0.4, 0.8)));
   EYEBOX_RETURN_IF_ERROR(watcher.Reach(0.8, "uniformity map"));
@@ -206,7 +208,7 @@ absl::StatusOr<v1::RunResult> RunRecording(const std::filesystem::path& recordin
                                            const RunOptions& options, const Watcher& watcher) {
   EYEBOX_RETURN_IF_ERROR(ValidateOptions(options));
   EYEBOX_ASSIGN_OR_RETURN(const auto reader, capture::RecordingReader::Open(recording));
-  auto found = Measure(*reader, options, watcher);
+  auto found = Measure(*reader, options, SensorFolder(recording, options.sensor), watcher);
   if (!found.ok()) return Within(recording, found.status());
   EYEBOX_RETURN_IF_ERROR(watcher.Reach(0.95, "writing results"));
   const Certification certification = CertificationOf(recording, reader->Header());
@@ -226,6 +228,7 @@ absl::StatusOr<v1::RunResult> RunRig(const capture::RigConfig& config,
     EYEBOX_ASSIGN_OR_RETURN(preflight, ReadPreflight(options.preflight));
   }
   EYEBOX_ASSIGN_OR_RETURN(capture::Rig rig, capture::OpenRig(config, SystemClock()));
+  if (!options.sensor.empty()) rig.config.sensor = options.sensor.string();
   EYEBOX_ASSIGN_OR_RETURN(const CapturePlan plan, capture::MakeGreyPlan({}));
   EYEBOX_RETURN_IF_ERROR(RecordPlan(rig, plan, recording, watcher.Part(0, kCaptureShare)).status());
   if (rig.origin == capture::RecordingOrigin::kSimulated) {
@@ -249,6 +252,7 @@ absl::StatusOr<v1::RunResult> ReplayRecording(const std::filesystem::path& recor
   config.photodiode_uri.clear();
   config.trigger_uri.clear();
   config.camera_trigger_line.clear();
+  config.sensor = SensorFolder(recording, {}).string();
   EYEBOX_ASSIGN_OR_RETURN(capture::Rig rig, capture::OpenRig(config, SystemClock()));
   EYEBOX_RETURN_IF_ERROR(
       RecordPlan(rig, PlanOf(*original), replayed, watcher.Part(0, kCaptureShare)).status());

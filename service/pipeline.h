@@ -18,6 +18,9 @@ struct RunOptions {
   // Of a rig that is captured: preflight.json, or the folder that holds it, to be kept beside the
   // recording. Without one the result is not certified.
   std::filesystem::path preflight = {};
+  // Folder of the characterised sensor; empty: that of the rig, else the copy in the recording,
+  // else the sensor is estimated from the frames.
+  std::filesystem::path sensor = {};
 };
 
 // Reduces, maps, fits, designs and certifies, and writes into `out` (created if missing):

@@ -21,6 +21,7 @@
 #include "service/results/uniformity.h"
 #include "service/steps/calibrate.h"
 #include "service/steps/levels.h"
+#include "service/steps/sensor.h"
 #include "service/steps/within.h"
 
 namespace eyebox::service {
@@ -41,7 +42,9 @@ absl::StatusOr<Bench> OpenBench(const SeriesChoice& choice, const Watcher& watch
   EYEBOX_ASSIGN_OR_RETURN(bench.series, ChooseSeries(*bench.reader, choice.series));
   // Fails on a wrong name at once, not after the calibration.
   EYEBOX_RETURN_IF_ERROR(LightCaptures(*bench.reader, bench.series).status());
-  EYEBOX_ASSIGN_OR_RETURN(bench.calibration, CalibrateCamera(*bench.reader, watcher));
+  EYEBOX_ASSIGN_OR_RETURN(
+      bench.calibration,
+      CalibrateCamera(*bench.reader, watcher, SensorFolder(choice.recording, choice.sensor)));
   return bench;
 }
 
@@ -84,7 +87,7 @@ absl::StatusOr<v1::ReduceResult> Reduce(const SeriesChoice& choice, std::optiona
   EYEBOX_ASSIGN_OR_RETURN(const auto groups, LightCaptures(*bench.reader, bench.series));
   EYEBOX_ASSIGN_OR_RETURN(const StimulusCaptures* group, ChooseStimulus(groups, drive));
   EYEBOX_ASSIGN_OR_RETURN(const optics::ReducedLevel level,
-                          ReduceCaptures(*bench.reader, *group, bench.calibration));
+                          ReduceCaptures(*bench.reader, *group, bench.calibration, choice.bracket));
   EYEBOX_ASSIGN_OR_RETURN(v1::ReduceResult result,
                           DescribeReduction(level, bench.calibration, bench.series, folder));
   if (!drive && groups.size() > 1) {

@@ -10,6 +10,7 @@
 #include "eyebox/v1/results.pb.h"
 #include "fit/activation/fit_activation.h"
 #include "fit/cube/design_table.h"
+#include "service/steps/levels.h"
 #include "service/watcher.h"
 
 namespace eyebox::service {
@@ -17,6 +18,9 @@ namespace eyebox::service {
 struct SeriesChoice {
   std::filesystem::path recording;
   std::optional<std::string> series;  // the main one, or the only one, unless given
+  // Folder of the characterised sensor; empty: the copy in the recording, if there is one.
+  std::filesystem::path sensor = {};
+  BracketOptions bracket = {};  // of ReduceSeries alone
 };
 
 // Merges the bracket of one stimulus of the series: the one of this grey drive value, else the

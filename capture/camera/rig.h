@@ -41,6 +41,7 @@ struct RigConfig {
   // The camera's input that the trigger is wired to, one of CameraInfo::trigger_lines; empty: its
   // pulses reach the photodiode alone.
   std::string camera_trigger_line = {};
+  std::string sensor = {};  // folder of the camera's characterisation; empty: none
 };
 
 // Camera and presenter may share state (a simulated headset), which lives as long as either.

@@ -153,6 +153,7 @@ v1::Rig ToProto(const RigConfig& rig) {
   proto.set_photodiode_uri(rig.photodiode_uri);
   proto.set_trigger_uri(rig.trigger_uri);
   proto.set_camera_trigger_line(rig.camera_trigger_line);
+  proto.set_sensor(rig.sensor);
   return proto;
 }
 
@@ -236,7 +237,8 @@ absl::StatusOr<RigConfig> FromProto(const v1::Rig& proto, const std::string& whe
                    .seed = proto.seed(),
                    .photodiode_uri = proto.photodiode_uri(),
                    .trigger_uri = proto.trigger_uri(),
-                   .camera_trigger_line = proto.camera_trigger_line()};
+                   .camera_trigger_line = proto.camera_trigger_line(),
+                   .sensor = proto.sensor()};
 }
 
 absl::StatusOr<CameraInfo> FromProto(const v1::CameraInfo& proto, const std::string& where) {

@@ -47,6 +47,7 @@ absl::StatusOr<RigConfig> ReadRigFile(const std::filesystem::path& file) {
   if (!rig.trigger_uri.empty()) {
     EYEBOX_RETURN_IF_ERROR(CheckTrigger(where + "trigger_uri", rig.trigger_uri));
   }
+  if (!rig.sensor.empty()) rig.sensor = (file.parent_path() / rig.sensor).string();
   return rig;
 }
 

@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "capture/base/status.h"
+#include "optics/sensor/sensor_range.h"
 
 namespace eyebox::optics {
 namespace {
@@ -55,6 +56,20 @@ NoiseModel SensorCharacterisation::ToNoiseModel() const {
   return noise;
 }
 
+absl::StatusOr<double> SensorCharacterisation::SaturationMargin() const {
+  constexpr double kLargestMargin = 0.5;
+  const SensorRange full{identity.bits};
+  if (identity.bits == 0 || !emva.saturation_reached) return full.saturation_margin;
+  EYEBOX_RETURN_IF_ERROR(Validate(full));
+  const double saturation_dn =
+      emva.dark_mean_dn.value + emva.gain_dn_per_e.value * emva.saturation_e.value;
+  const double margin = std::max(1 - saturation_dn / full.FullScaleDn(), full.saturation_margin);
+  if (margin <= kLargestMargin) return margin;
+  return BadInput("sensor",
+                  absl::StrCat("it saturates at ", saturation_dn, " DN of ", full.FullScaleDn()),
+                  "state the significant bits that its counts fill");
+}
+
 absl::StatusOr<SensorCharacterisation> CharacteriseSensor(const SeriesCollector& series,
                                                           const Emva1288Options& options,
                                                           const DefectOptions& defects) {
@@ -88,6 +103,7 @@ absl::Status ApplySensor(const SensorCharacterisation& sensor, Calibration& cali
                      calibration.noise.gain_db, " dB"),
         "characterise the camera at the gain of the recording");
   }
+  EYEBOX_ASSIGN_OR_RETURN(calibration.saturation_margin, sensor.SaturationMargin());
   calibration.noise = sensor.ToNoiseModel();
   calibration.linearity = sensor.linearity;
   const auto known = calibration.defects.defective.pixels();

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -17,8 +18,17 @@
 
 namespace eyebox::optics {
 
+// Which camera was characterised, and how its counts came; empty or 0 where unknown.
+struct SensorIdentity {
+  std::string model;
+  std::string serial;
+  std::string pixel_format;
+  int bits = 0;
+};
+
 // The sensor part of a rig: it holds for one camera, gain setting and region of interest.
 struct SensorCharacterisation {
+  SensorIdentity identity;
   Emva1288Result emva;
   DefectMap defects;                        // hot and dead
   std::optional<LinearityCurve> linearity;  // where the series determines one
@@ -26,6 +36,13 @@ struct SensorCharacterisation {
 
   // K, temporal dark noise without quantisation, mean dark of the shortest exposure.
   NoiseModel ToNoiseModel() const;
+
+  // SensorRange::saturation_margin that puts saturation where it was measured, never above that of
+  // full scale. Where the bits are unknown or the series did not reach saturation: that of full
+  // scale.
+  // Errors: InvalidArgument (it saturates in the lower half of full scale: more bits are claimed
+  // than the sensor fills).
+  absl::StatusOr<double> SaturationMargin() const;
 };
 
 // Statistics, defect map and linearity of a series whose images were read. A linearity curve is
@@ -35,9 +52,9 @@ absl::StatusOr<SensorCharacterisation> CharacteriseSensor(const SeriesCollector&
                                                           const Emva1288Options& options = {},
                                                           const DefectOptions& defects = {});
 
-// Puts the sensor into a calibration whose darks were recorded with the lights: noise model and
-// linearity replace what is there, defects are added to it.
-// Errors: InvalidArgument (gain or size differ from the calibration's).
+// Puts the sensor into a calibration whose darks were recorded with the lights: noise model,
+// saturation and linearity replace what is there, defects are added to it.
+// Errors: InvalidArgument (gain or size differ from the calibration's), those of SaturationMargin.
 absl::Status ApplySensor(const SensorCharacterisation& sensor, Calibration& calibration);
 
 }  // namespace eyebox::optics

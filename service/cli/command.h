@@ -29,6 +29,10 @@ void AddCommand(CLI::App& app, Work& work, const std::string& name, const std::s
   command->callback([&work, options, run] { work = [options, run] { return run(*options); }; });
 }
 
+inline constexpr char kSensorHelp[] =
+    "Folder that characterize --out wrote of this camera (default: the copy in the recording, "
+    "else estimated from the frames)";
+
 void AddCapture(CLI::App& app, Work& work);
 void AddDevices(CLI::App& app, Work& work);
 void AddImport(CLI::App& app, Work& work);

@@ -17,6 +17,7 @@ struct Options {
   std::string recording;
   std::string csv;
   std::optional<std::string> series;
+  std::string sensor;
   fit::ActivationOptions fit;
   std::string out;
   bool all_models = false;
@@ -77,11 +78,12 @@ absl::Status Run(const Options& options) {
     EYEBOX_ASSIGN_OR_RETURN(const bool colours, fit::HoldsColours(options.csv));
     if (colours) return FitColours(options);
   }
-  EYEBOX_ASSIGN_OR_RETURN(const v1::ActivationResult result,
-                          options.csv.empty()
-                              ? FitRecording({options.recording, options.series}, options.fit,
-                                             options.all_models, options.out, TerminalWatcher())
-                              : FitCsv(options.csv, options.fit, options.all_models));
+  EYEBOX_ASSIGN_OR_RETURN(
+      const v1::ActivationResult result,
+      options.csv.empty()
+          ? FitRecording({options.recording, options.series, options.sensor}, options.fit,
+                         options.all_models, options.out, TerminalWatcher())
+          : FitCsv(options.csv, options.fit, options.all_models));
   PrintWarnings(result.warnings());
   if (options.json) return PrintJson(result);
   std::printf("  %s, weights %s: rms %s, leave-one-out rms %s\n", result.model().c_str(),
@@ -108,6 +110,7 @@ void AddFit(CLI::App& app, Work& work) {
             "Series with columns m_k,lum[,lum_sigma], or m_r,m_g,m_b,x,y,z for colour");
         source->require_option(1);
         command.add_option("--series", options.series, "Series (default: the main or only one)");
+        command.add_option("--sensor", options.sensor, kSensorHelp);
         command
             .add_option(
                 "--model", options.fit.model,

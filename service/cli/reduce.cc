@@ -13,6 +13,8 @@ namespace {
 struct Options {
   std::string recording;
   std::optional<std::string> series;
+  std::string sensor;
+  BracketOptions bracket;
   std::optional<double> level;
   std::string out;
   bool json = false;
@@ -39,9 +41,10 @@ void PrintBracket(const v1::ReduceResult& result) {
 }
 
 absl::Status Run(const Options& options) {
-  EYEBOX_ASSIGN_OR_RETURN(const v1::ReduceResult result,
-                          ReduceSeries({options.recording, options.series}, options.level,
-                                       options.out, TerminalWatcher()));
+  EYEBOX_ASSIGN_OR_RETURN(
+      const v1::ReduceResult result,
+      ReduceSeries({options.recording, options.series, options.sensor, options.bracket},
+                   options.level, options.out, TerminalWatcher()));
   PrintWarnings(result.warnings());
   if (options.json) return PrintJson(result);
   PrintParameters(result.parameters());
@@ -58,8 +61,15 @@ void AddReduce(CLI::App& app, Work& work) {
       [](CLI::App& command, Options& options) {
         command.add_option("recording", options.recording, "Folder of the recording")->required();
         command.add_option("--series", options.series, "Series (default: the main or only one)");
+        command.add_option("--sensor", options.sensor, kSensorHelp);
         command.add_option("--level", options.level,
                            "Grey drive value, 0 to 1 (default: the first that was recorded)");
+        command
+            .add_option("--clip", options.bracket.clip_sigmas,
+                        "Leave out frames this many sigmas off, 3 or more (default: none)")
+            ->check(CLI::Range(3.0, 100.0));
+        command.add_flag("--repair", options.bracket.repair_defects,
+                         "Fill defective pixels from neighbours for display; they stay masked");
         command.add_option("--out", options.out, "Write luminance, sigma and mask there as NPY");
         command.add_flag("--json", options.json, "Print the result as JSON on stdout");
       },

@@ -47,6 +47,7 @@ void AddRun(CLI::App& app, Work& work) {
         options.output.AddTo(command, "SOURCE/results/run; of a rig: out/NAME");
         command.add_option("--recording", options.recording,
                            "Where a rig's frames go; must not exist (default: OUT/recording)");
+        command.add_option("--sensor", options.output.run.sensor, kSensorHelp);
         command.add_option("--preflight", options.output.run.preflight,
                            "preflight.json of the rig, or its folder: certifies what passed");
       },

@@ -13,14 +13,15 @@ namespace {
 struct Options {
   std::string recording;
   std::optional<std::string> series;
+  std::string sensor;
   std::string out;
   bool json = false;
 };
 
 absl::Status Run(const Options& options) {
-  EYEBOX_ASSIGN_OR_RETURN(
-      const v1::UniformityResult result,
-      MapUniformity({options.recording, options.series}, options.out, TerminalWatcher()));
+  EYEBOX_ASSIGN_OR_RETURN(const v1::UniformityResult result,
+                          MapUniformity({options.recording, options.series, options.sensor},
+                                        options.out, TerminalWatcher()));
   PrintWarnings(result.warnings());
   if (options.json) return PrintJson(result);
   PrintParameters(result.parameters());
@@ -40,6 +41,7 @@ void AddUniformity(CLI::App& app, Work& work) {
       [](CLI::App& command, Options& options) {
         command.add_option("recording", options.recording, "Folder of the recording")->required();
         command.add_option("--series", options.series, "Series (default: the main or only one)");
+        command.add_option("--sensor", options.sensor, kSensorHelp);
         command.add_option("--out", options.out, "Write raw and smooth g with sigma there as NPY");
         command.add_flag("--json", options.json, "Print the result as JSON on stdout");
       },

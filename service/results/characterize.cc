@@ -169,6 +169,9 @@ absl::StatusOr<v1::CharacterizeResult> DescribeSensor(const CharacterizedSensor&
   result.set_release(sensor.emva.release);
   result.set_source(characterized.source);
   result.set_bits(characterized.bits);
+  result.set_camera_model(sensor.identity.model);
+  result.set_camera_serial(sensor.identity.serial);
+  result.set_pixel_format(sensor.identity.pixel_format);
   result.set_gain_db(sensor.gain_db);
   result.set_region_left_px(characterized.region.left_px);
   result.set_region_top_px(characterized.region.top_px);
@@ -198,12 +201,16 @@ absl::StatusOr<optics::SensorCharacterisation> ReadSensor(const std::filesystem:
   v1::CharacterizeResult result;
   EYEBOX_RETURN_IF_ERROR(ReadJson(file, result));
   optics::SensorCharacterisation sensor;
+  sensor.identity = {result.camera_model(), result.camera_serial(), result.pixel_format(),
+                     result.bits()};
   sensor.gain_db = result.gain_db();
+  sensor.emva.saturation_reached = result.saturation_reached();
   sensor.emva.release = result.release();
   EYEBOX_ASSIGN_OR_RETURN(sensor.emva.gain_dn_per_e, Find(result, "K", file.string()));
   EYEBOX_ASSIGN_OR_RETURN(sensor.emva.dark_mean_dn, Find(result, "mu_y.dark", file.string()));
   EYEBOX_ASSIGN_OR_RETURN(sensor.emva.dark_noise_dn, Find(result, "sigma_y.dark", file.string()));
   EYEBOX_ASSIGN_OR_RETURN(sensor.emva.dark_noise_e, Find(result, "sigma_d", file.string()));
+  EYEBOX_ASSIGN_OR_RETURN(sensor.emva.saturation_e, Find(result, "mu_e.sat", file.string()));
   if (!(sensor.emva.gain_dn_per_e.value > 0)) {
     return BadInput(file.string(), "K is not above 0", "write it anew with characterize --out");
   }

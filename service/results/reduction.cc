@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "capture/base/status.h"
+#include "optics/reduce/variance_budget.h"
 #include "service/artifacts.h"
 #include "service/results/parameter.h"
 #include "service/results/sigma_map.h"
@@ -61,6 +63,23 @@ void AddExposures(const optics::BracketReport& report, v1::ReduceResult& result)
     if (!std::isfinite(check.ratio)) continue;
     pair.set_signal_ratio_over_time_ratio(check.ratio);
     pair.set_sigma(check.sigma);
+  }
+}
+
+// Each term's part of the pixels' variance; that of the scale, which all pixels share, beside it.
+void AddBudget(const optics::ReducedLevel& level, v1::ReduceResult& result) {
+  const optics::VarianceBudget budget = optics::WithScale(
+      level.report.budget, level.luminance.image, level.luminance.scale_relative_sigma);
+  const std::pair<const char*, double> terms[] = {{"variance_photon", budget.photon},
+                                                  {"variance_read", budget.read},
+                                                  {"variance_quantisation", budget.quantisation},
+                                                  {"variance_dark", budget.dark},
+                                                  {"variance_flat", budget.flat},
+                                                  {"variance_linearity", budget.linearity},
+                                                  {"variance_scatter", budget.scatter},
+                                                  {"variance_scale_common", budget.scale}};
+  for (const auto& [name, share] : terms) {
+    AddParameter(*result.mutable_parameters(), name, share, 0, "1");
   }
 }
 
@@ -125,6 +144,7 @@ absl::StatusOr<v1::ReduceResult> DescribeReduction(const optics::ReducedLevel& l
                SigmaOfRoot(noise.read_variance_dn2, noise.read_variance_sigma_dn2), "DN");
   AddParameter(parameters, "luminance_scale_relative_sigma", luminance.scale_relative_sigma, 0,
                "1");
+  AddBudget(level, result);
   result.set_noise_source(noise.noise_source);
   result.set_saturated_in_all_share(level.report.all_saturated_share);
   result.set_dark_in_all_share(level.report.all_dark_share);

@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "capture/base/status.h"
+#include "optics/reduce/interpolate_dark.h"
 #include "optics/reduce/reduce_level.h"
 #include "optics/sensor/photon_transfer.h"
 #include "service/steps/captures.h"
+#include "service/steps/sensor.h"
+#include "service/steps/within.h"
 
 namespace eyebox::service {
 namespace {
@@ -43,6 +47,35 @@ absl::StatusOr<optics::NoiseModel> MeasureNoise(capture::RecordingReader& record
   return transfer.Fit();
 }
 
+absl::Status TakeSensor(const capture::RecordingReader& recording, const optics::Setting& setting,
+                        const std::filesystem::path& folder, optics::Calibration& calibration) {
+  EYEBOX_ASSIGN_OR_RETURN(const optics::SensorCharacterisation sensor,
+                          ReadSensorOf(recording.Header().camera, folder));
+  calibration.noise.gain_db = setting.gain_db;
+  const absl::Status applied = optics::ApplySensor(sensor, calibration);
+  return applied.ok() ? applied : Within(folder, applied);
+}
+
+// Darks of the settings of lights and flats that have none of their own.
+void CompleteDarks(const capture::RecordingReader& recording, optics::Calibration& calibration) {
+  const size_t recorded = calibration.darks.size();
+  for (const capture::CaptureEntry& entry : recording.Captures()) {
+    if (entry.spec.kind == FrameKind::kDark || !entry.suspect.empty()) continue;
+    const optics::Setting setting{entry.spec.exposure_s, entry.spec.gain_db};
+    const bool refused = std::ranges::any_of(calibration.refused_darks, [&](const auto& known) {
+      return optics::SameSetting(known.first, setting);
+    });
+    if (refused || optics::FindDark(calibration, setting).ok()) continue;
+    auto dark = optics::InterpolateDark(std::span(calibration.darks).first(recorded),
+                                        calibration.defects.defective, setting);
+    if (dark.ok()) {
+      calibration.darks.push_back(*std::move(dark));
+    } else {
+      calibration.refused_darks.emplace_back(setting, dark.status().message());
+    }
+  }
+}
+
 std::optional<optics::KnownLuminance> LuminanceOf(const CaptureSpec& spec) {
   if (!spec.luminance_cd_m2) return std::nullopt;
   return optics::KnownLuminance{*spec.luminance_cd_m2, spec.luminance_relative_sigma.value_or(0)};
@@ -58,7 +91,8 @@ absl::StatusOr<std::optional<optics::FlatField>> MeasureFlatOf(
                       "record all flats at one luminance");
     }
   }
-  EYEBOX_ASSIGN_OR_RETURN(const auto stacks, StackCaptures(recording, captures));
+  EYEBOX_ASSIGN_OR_RETURN(const auto stacks,
+                          StackCaptures(recording, captures, calibration.saturation_margin));
   EYEBOX_ASSIGN_OR_RETURN(
       optics::FlatField flat,
       optics::MeasureFlat(stacks, calibration, LuminanceOf(captures[0]->spec),
@@ -69,17 +103,23 @@ absl::StatusOr<std::optional<optics::FlatField>> MeasureFlatOf(
 }  // namespace
 
 absl::StatusOr<optics::Calibration> CalibrateCamera(capture::RecordingReader& recording,
-                                                    const Watcher& watcher) {
+                                                    const Watcher& watcher,
+                                                    const std::filesystem::path& sensor_folder) {
   optics::Calibration calibration;
   EYEBOX_RETURN_IF_ERROR(watcher.Reach(0, "dark frames and hot pixels"));
   EYEBOX_ASSIGN_OR_RETURN(const std::vector<optics::Stack> darks, StackDarks(recording));
   EYEBOX_ASSIGN_OR_RETURN(calibration.defects, optics::FindHotPixels(darks));
-  EYEBOX_ASSIGN_OR_RETURN(calibration.noise, MeasureNoise(recording, darks, calibration.defects,
-                                                          watcher.Part(0.1, 0.9)));
+  if (sensor_folder.empty()) {
+    EYEBOX_ASSIGN_OR_RETURN(calibration.noise, MeasureNoise(recording, darks, calibration.defects,
+                                                            watcher.Part(0.1, 0.9)));
+  } else {
+    EYEBOX_RETURN_IF_ERROR(TakeSensor(recording, darks[0].setting, sensor_folder, calibration));
+  }
   for (const optics::Stack& dark : darks) {
     EYEBOX_ASSIGN_OR_RETURN(optics::DarkFrame frame, optics::MeasureDark(dark, calibration.noise));
     calibration.darks.push_back(std::move(frame));
   }
+  CompleteDarks(recording, calibration);
   EYEBOX_RETURN_IF_ERROR(watcher.Reach(0.9, "flat field and luminance scale"));
   EYEBOX_ASSIGN_OR_RETURN(calibration.flat, MeasureFlatOf(recording, calibration));
   return calibration;

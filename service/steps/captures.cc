@@ -27,11 +27,11 @@ std::string SeriesOf(const capture::RecordingReader& recording) {
 
 optics::FrameStacker& StackerFor(
     std::vector<std::pair<optics::Setting, optics::FrameStacker>>& stackers,
-    const optics::Setting& setting, const optics::SensorRange& range) {
+    const optics::Setting& setting, const optics::SensorRange& range, bool keep_extremes) {
   for (auto& [known, stacker] : stackers) {
     if (optics::SameSetting(known, setting)) return stacker;
   }
-  stackers.emplace_back(setting, optics::FrameStacker(setting, range));
+  stackers.emplace_back(setting, optics::FrameStacker(setting, range, keep_extremes));
   return stackers.back().second;
 }
 
@@ -82,13 +82,14 @@ absl::StatusOr<std::vector<StimulusCaptures>> GreyLevels(const capture::Recordin
 }
 
 absl::StatusOr<std::vector<optics::Stack>> StackCaptures(
-    capture::RecordingReader& recording,
-    const std::vector<const capture::CaptureEntry*>& captures) {
-  const optics::SensorRange range{.bits = recording.Header().camera.significant_bits};
+    capture::RecordingReader& recording, const std::vector<const capture::CaptureEntry*>& captures,
+    double saturation_margin, bool keep_extremes) {
+  const optics::SensorRange range{.bits = recording.Header().camera.significant_bits,
+                                  .saturation_margin = saturation_margin};
   std::vector<std::pair<optics::Setting, optics::FrameStacker>> stackers;
   for (const capture::CaptureEntry* entry : captures) {
     const optics::Setting setting{entry->spec.exposure_s, entry->spec.gain_db};
-    optics::FrameStacker& stacker = StackerFor(stackers, setting, range);
+    optics::FrameStacker& stacker = StackerFor(stackers, setting, range, keep_extremes);
     EYEBOX_RETURN_IF_ERROR(
         recording.VisitFrames(*entry, [&](const Frame& frame) { return stacker.Add(frame.view); }));
   }

@@ -36,7 +36,8 @@ absl::StatusOr<std::vector<StimulusCaptures>> GreyLevels(const capture::Recordin
 // One stack per exposure and gain; captures of the same setting are averaged together.
 // Errors: those of reading.
 absl::StatusOr<std::vector<optics::Stack>> StackCaptures(
-    capture::RecordingReader& recording, const std::vector<const capture::CaptureEntry*>& captures);
+    capture::RecordingReader& recording, const std::vector<const capture::CaptureEntry*>& captures,
+    double saturation_margin = optics::SensorRange{}.saturation_margin, bool keep_extremes = false);
 
 // Distance of neighbours of one colour: 1 of a grey sensor, 2 of a Bayer mosaic. 2 also where the
 // recording does not tell (imported frames): right for both, if less sharp for a grey one.

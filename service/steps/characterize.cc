@@ -165,6 +165,7 @@ absl::StatusOr<CharacterizedSensor> CharacterizeDescriptor(const std::filesystem
   result.source = descriptor.filename().string();
   result.irradiation_unit = "photon";
   result.bits = described.bits;
+  result.sensor.identity.bits = described.bits;
   result.region = {0, 0, described.size};
   if (watcher.progress) watcher.progress({1, "done"});
   return result;
@@ -180,7 +181,8 @@ absl::StatusOr<CharacterizedSensor> CharacterizeCaptures(capture::RecordingReade
   }
   CharacterizedSensor result;
   result.region = MiddleThird(sets[0].captures[0]->frame_size);
-  result.bits = recording.Header().camera.significant_bits;
+  const capture::CameraInfo& camera = recording.Header().camera;
+  result.bits = camera.significant_bits;
   result.irradiation_unit = "DN";
   optics::SeriesCollector series;
   for (size_t k = 0; k < sets.size(); ++k) {
@@ -195,6 +197,7 @@ absl::StatusOr<CharacterizedSensor> CharacterizeCaptures(capture::RecordingReade
   EYEBOX_ASSIGN_OR_RETURN(
       result.sensor,
       optics::CharacteriseSensor(series, {.photons_known = false, .pairs_are_temporal = false}));
+  result.sensor.identity = {camera.model, camera.serial, camera.pixel_format, result.bits};
   if (!flats) {
     result.sensor.emva.warnings.push_back(
         "fewer than ten exposures of flats: full fields of the display take part, whose own fine "

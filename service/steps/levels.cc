@@ -8,6 +8,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "capture/base/status.h"
+#include "optics/reduce/clip_stack.h"
 #include "service/steps/drift.h"
 #include "service/steps/reference_disk.h"
 
@@ -86,10 +87,32 @@ absl::StatusOr<std::string> ChooseSeries(const capture::RecordingReader& recordi
 
 absl::StatusOr<optics::ReducedLevel> ReduceCaptures(capture::RecordingReader& recording,
                                                     const StimulusCaptures& group,
-                                                    const optics::Calibration& calibration) {
-  EYEBOX_ASSIGN_OR_RETURN(const auto stacks, StackCaptures(recording, group.captures));
-  return optics::ReduceLevel(stacks, calibration,
-                             {.colour_period_px = ColourPeriodPx(recording.Header())});
+                                                    const optics::Calibration& calibration,
+                                                    const BracketOptions& options) {
+  const bool clip = options.clip_sigmas > 0;
+  EYEBOX_ASSIGN_OR_RETURN(
+      auto stacks, StackCaptures(recording, group.captures, calibration.saturation_margin, clip));
+  std::string clipped;
+  for (optics::Stack& stack : stacks) {
+    if (!clip) break;
+    EYEBOX_ASSIGN_OR_RETURN(
+        stack, optics::ClipStack(std::move(stack), calibration.noise, options.clip_sigmas));
+    size_t rejected = 0;
+    for (const uint8_t count : stack.rejected_count.pixels()) rejected += count;
+    absl::StrAppend(&clipped, clipped.empty() ? "" : ", ", rejected, " counts of ",
+                    optics::Describe(stack.setting));
+  }
+  EYEBOX_ASSIGN_OR_RETURN(
+      optics::ReducedLevel level,
+      optics::ReduceLevel(stacks, calibration,
+                          {.colour_period_px = ColourPeriodPx(recording.Header()),
+                           .repair_defects = options.repair_defects}));
+  if (clip) {
+    auto& history = level.luminance.image.history;
+    history.insert(history.begin(), absl::StrFormat("ClipStack(%g sigma, left out %s)",
+                                                    options.clip_sigmas, clipped));
+  }
+  return level;
 }
 
 absl::StatusOr<MeasuredLevels> ReduceGreyLevels(capture::RecordingReader& recording,

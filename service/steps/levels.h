@@ -39,10 +39,16 @@ struct MeasuredLevels {
 absl::StatusOr<std::string> ChooseSeries(const capture::RecordingReader& recording,
                                          const std::optional<std::string>& asked);
 
-// One bracket. Errors: those of reading and of ReduceLevel.
+struct BracketOptions {
+  double clip_sigmas = 0;       // see ClipStack(); 0: every frame counts
+  bool repair_defects = false;  // see RepairDefects()
+};
+
+// One bracket. Errors: those of reading, of ClipStack and of ReduceLevel.
 absl::StatusOr<optics::ReducedLevel> ReduceCaptures(capture::RecordingReader& recording,
                                                     const StimulusCaptures& group,
-                                                    const optics::Calibration& calibration);
+                                                    const optics::Calibration& calibration,
+                                                    const BracketOptions& options = {});
 
 // All grey levels. A level with no value at the reference point or over most of the field (it
 // saturates even the shortest exposure) is left out with a warning. Where the reference patch of

@@ -12,6 +12,7 @@
 #include "capture/recording/remaining.h"
 #include "capture/recording/writer.h"
 #include "service/steps/capture_log.h"
+#include "service/steps/sensor.h"
 
 namespace eyebox::service {
 namespace {
@@ -112,10 +113,15 @@ bool MeasuresWithDevice(const capture::Rig& rig) {
 absl::StatusOr<capture::RunReport> RecordPlan(capture::Rig& rig, const CapturePlan& plan,
                                               const std::filesystem::path& recording,
                                               const Watcher& watcher, const Settle& settle) {
-  EYEBOX_ASSIGN_OR_RETURN(
-      const auto writer,
-      capture::RecordingWriter::Create(recording, capture::MakeHeader(rig, plan, *SystemClock()),
-                                       SystemClock()));
+  const std::filesystem::path sensor = rig.config.sensor;
+  capture::RecordingHeader header = capture::MakeHeader(rig, plan, *SystemClock());
+  if (!sensor.empty()) {
+    EYEBOX_RETURN_IF_ERROR(ReadSensorOf(rig.camera->Info(), sensor).status());
+    header.rig.sensor = kSensorFolder;  // the copy stays with the recording
+  }
+  EYEBOX_ASSIGN_OR_RETURN(const auto writer,
+                          capture::RecordingWriter::Create(recording, header, SystemClock()));
+  if (!sensor.empty()) EYEBOX_RETURN_IF_ERROR(KeepSensor(sensor, recording));
   return capture::RunPlan(rig, plan, *writer, OptionsFor(rig, recording, watcher, settle));
 }
 

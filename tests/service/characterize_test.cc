@@ -123,5 +123,47 @@ TEST_F(CharacterizeTest, NeitherSourceNorBothIsAccepted) {
   EXPECT_EQ(RunEyebox("characterize rec --emva1288 d.txt").exit_code, 2);
 }
 
+// The fixture's own characterisation is a sensor part for it.
+TEST_F(CharacterizeTest, ReducingWithTheSensorTakesGainAndDefectsFromIt) {
+  const std::string out = folder_ / "sensor";
+  const auto sensor = ParsedFrom<v1::CharacterizeResult>(
+      RunEyebox("characterize " + std::string(kFixture) + " --out " + out + " --json"));
+  EXPECT_EQ(sensor.camera_model(), "simulator");
+  const auto reduced = ParsedFrom<v1::ReduceResult>(
+      RunEyebox("reduce " + std::string(kFixture) + " --sensor " + out + " --json"));
+  EXPECT_THAT(reduced.noise_source(), HasSubstr("EMVA 1288"));
+  for (const v1::Parameter& parameter : reduced.parameters()) {
+    if (parameter.name() == "system_gain") EXPECT_EQ(parameter.value(), Value(sensor, "K"));
+  }
+  const auto estimated =
+      ParsedFrom<v1::ReduceResult>(RunEyebox("reduce " + std::string(kFixture) + " --json"));
+  EXPECT_EQ(estimated.noise_source().find("EMVA 1288"), std::string::npos);
+}
+
+TEST_F(CharacterizeTest, SensorOfAnotherCameraIsRefusedByName) {
+  const std::string out = folder_ / "sensor";
+  ASSERT_EQ(RunEyebox("characterize --emva1288 " + WriteDescriptor() + " --out " + out).exit_code,
+            0);
+  const Outcome outcome = RunEyebox("reduce " + std::string(kFixture) + " --sensor " + out);
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr(out));
+  EXPECT_THAT(outcome.err, HasSubstr("it was characterised with"));
+}
+
+TEST_F(CharacterizeTest, RigKeepsItsSensorWithTheRecording) {
+  const std::string out = folder_ / "sensor";
+  ASSERT_EQ(RunEyebox("characterize " + std::string(kFixture) + " --out " + out).exit_code, 0);
+  std::ofstream(folder_ / "rig.textproto")
+      << "name: \"lab\" camera_uri: \"sim:rift-s-like\" seed: 3 sensor: \"sensor\"\n";
+  const std::string recording = folder_ / "recording";
+  const Outcome captured =
+      RunEyebox("capture " + std::string(folder_ / "rig.textproto") + " --out " + recording);
+  ASSERT_EQ(captured.exit_code, 0) << captured.err;
+  EXPECT_TRUE(std::filesystem::exists(recording + "/sensor/sensor.json"));
+  std::filesystem::remove_all(out);  // the copy is enough
+  const auto reduced = ParsedFrom<v1::ReduceResult>(RunEyebox("reduce " + recording + " --json"));
+  EXPECT_THAT(reduced.noise_source(), HasSubstr("EMVA 1288"));
+}
+
 }  // namespace
 }  // namespace eyebox::service

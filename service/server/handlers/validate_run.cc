@@ -23,6 +23,10 @@ constexpr SizeRule kSizes[] = {
 
 absl::Status ValidateRig(const v1::Rig& rig) {
   EYEBOX_RETURN_IF_ERROR(CheckName(kRigRule, "rig.name", rig.name()).status());
+  if (!rig.sensor().empty()) {
+    return BadField("rig.sensor", "is given, and no path of a client is followed",
+                    "record with the command line, or put sensor/ into the recording");
+  }
   return CheckName(kCameraRule, "rig.camera_uri", rig.camera_uri()).status();
 }
 

@@ -36,6 +36,9 @@ struct GlareSeries {
   double field_radius_deg = 50;  // of the display, around the disk's centre
   std::string luminance_unit;    // "cd/m2" or "relative"
   std::string source;            // a file or recording, for messages
+  // How the display's own luminance varies, rings by rising radius; dark beyond the last. Empty:
+  // even up to field_radius_deg.
+  std::vector<FieldRing> field = {};
 
   // Errors: InvalidArgument naming source and reading (fewer than 4, an angle negative or not
   // finite, luminance not finite, sigma not above 0) or ring.

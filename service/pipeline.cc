@@ -55,8 +55,9 @@ absl::StatusOr<Findings> Measure(capture::RecordingReader& recording, const RunO
   EYEBOX_ASSIGN_OR_RETURN(const std::string series, ChooseSeries(recording, std::nullopt));
   EYEBOX_ASSIGN_OR_RETURN(found.calibration,
                           CalibrateCamera(recording, watcher.Part(0, 0.4), sensor));
-  EYEBOX_ASSIGN_OR_RETURN(
-      found.levels, ReduceGreyLevels(recording, series, found.calibration, watcher.Part(0.4, 0.8)));
+  EYEBOX_ASSIGN_OR_RETURN(const KnownGlare glare, GlareOf(options.scatter, recording.Header()));
+  EYEBOX_ASSIGN_OR_RETURN(found.levels, ReduceGreyLevels(recording, series, found.calibration,
+                                                         watcher.Part(0.4, 0.8), glare));
   EYEBOX_RETURN_IF_ERROR(watcher.Reach(0.8, "uniformity map"));
   EYEBOX_ASSIGN_OR_RETURN(found.map,
                           optics::MeasureUniformity(found.levels.reference.reduced.luminance));
@@ -81,6 +82,10 @@ absl::Status DescribeSteps(const Findings& found, const capture::RecordingHeader
   EYEBOX_ASSIGN_OR_RETURN(*result.mutable_uniformity(),
                           DescribeUniformity(found.map, reference.reduced.luminance,
                                              reference.drive, header.geometry, out));
+  EYEBOX_RETURN_IF_ERROR(AddLevelIndependence(optics::TestLevelIndependence(found.levels.blocks),
+                                              LevelBlockPx(found.levels.size), out,
+                                              *result.mutable_uniformity()));
+  if (reference.glare) AddScatterRemoval(*reference.glare, *result.mutable_uniformity());
   *result.mutable_activation() = DescribeActivation(found.activation, found.levels.series);
   EYEBOX_ASSIGN_OR_RETURN(*result.mutable_activation()->mutable_field(),
                           DescribeField(found.field, found.levels, out));

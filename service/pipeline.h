@@ -8,6 +8,7 @@
 #include "absl/status/statusor.h"
 #include "capture/camera/rig.h"
 #include "eyebox/v1/results.pb.h"
+#include "service/steps/take_scatter_out.h"
 #include "service/watcher.h"
 
 namespace eyebox::service {
@@ -21,6 +22,7 @@ struct RunOptions {
   // Folder of the characterised sensor; empty: that of the rig, else the copy in the recording,
   // else the sensor is estimated from the frames.
   std::filesystem::path sensor = {};
+  ScatterChoice scatter = {};  // to be taken out of the luminance
 };
 
 // Reduces, maps, fits, designs and certifies, and writes into `out` (created if missing):

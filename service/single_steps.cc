@@ -18,6 +18,7 @@
 #include "service/results/cube.h"
 #include "service/results/field_verdict.h"
 #include "service/results/reduction.h"
+#include "service/results/scatter.h"
 #include "service/results/uniformity.h"
 #include "service/steps/calibrate.h"
 #include "service/steps/levels.h"
@@ -34,6 +35,7 @@ struct Bench {
   std::unique_ptr<capture::RecordingReader> reader;
   std::string series;
   optics::Calibration calibration;
+  KnownGlare glare;
 };
 
 absl::StatusOr<Bench> OpenBench(const SeriesChoice& choice, const Watcher& watcher) {
@@ -42,6 +44,7 @@ absl::StatusOr<Bench> OpenBench(const SeriesChoice& choice, const Watcher& watch
   EYEBOX_ASSIGN_OR_RETURN(bench.series, ChooseSeries(*bench.reader, choice.series));
   // Fails on a wrong name at once, not after the calibration.
   EYEBOX_RETURN_IF_ERROR(LightCaptures(*bench.reader, bench.series).status());
+  EYEBOX_ASSIGN_OR_RETURN(bench.glare, GlareOf(choice.scatter, bench.reader->Header()));
   EYEBOX_ASSIGN_OR_RETURN(
       bench.calibration,
       CalibrateCamera(*bench.reader, watcher, SensorFolder(choice.recording, choice.sensor)));
@@ -86,10 +89,12 @@ absl::StatusOr<v1::ReduceResult> Reduce(const SeriesChoice& choice, std::optiona
   EYEBOX_RETURN_IF_ERROR(watcher.Reach(0.8, "merging the exposures"));
   EYEBOX_ASSIGN_OR_RETURN(const auto groups, LightCaptures(*bench.reader, bench.series));
   EYEBOX_ASSIGN_OR_RETURN(const StimulusCaptures* group, ChooseStimulus(groups, drive));
-  EYEBOX_ASSIGN_OR_RETURN(const optics::ReducedLevel level,
+  EYEBOX_ASSIGN_OR_RETURN(optics::ReducedLevel level,
                           ReduceCaptures(*bench.reader, *group, bench.calibration, choice.bracket));
+  EYEBOX_ASSIGN_OR_RETURN(const auto glare, TakeScatterOut(bench.glare, level));
   EYEBOX_ASSIGN_OR_RETURN(v1::ReduceResult result,
                           DescribeReduction(level, bench.calibration, bench.series, folder));
+  if (glare) AddScatterRemoval(*glare, result);
   if (!drive && groups.size() > 1) {
     result.add_warnings(absl::StrCat("the series shows ", groups.size(),
                                      " stimuli; this is the first that was recorded, drive ",
@@ -103,15 +108,19 @@ absl::StatusOr<v1::UniformityResult> Map(const SeriesChoice& choice,
                                          const std::filesystem::path& folder,
                                          const Watcher& watcher) {
   EYEBOX_ASSIGN_OR_RETURN(const Bench bench, OpenBench(choice, watcher.Part(0, 0.7)));
-  EYEBOX_ASSIGN_OR_RETURN(
-      const GreyLevel level,
-      ReduceBrightestLevel(*bench.reader, bench.series, bench.calibration, watcher.Part(0.7, 0.9)));
+  EYEBOX_ASSIGN_OR_RETURN(const MeasuredLevels levels,
+                          ReduceGreyLevels(*bench.reader, bench.series, bench.calibration,
+                                           watcher.Part(0.7, 0.9), bench.glare));
+  const GreyLevel& level = levels.reference;
   EYEBOX_RETURN_IF_ERROR(watcher.Reach(0.9, "uniformity map"));
   EYEBOX_ASSIGN_OR_RETURN(const optics::UniformityMap map,
                           optics::MeasureUniformity(level.reduced.luminance));
   EYEBOX_ASSIGN_OR_RETURN(v1::UniformityResult result,
                           DescribeUniformity(map, level.reduced.luminance, level.drive,
                                              bench.reader->Header().geometry, folder));
+  EYEBOX_RETURN_IF_ERROR(AddLevelIndependence(optics::TestLevelIndependence(levels.blocks),
+                                              LevelBlockPx(levels.size), folder, result));
+  if (level.glare) AddScatterRemoval(*level.glare, result);
   if (watcher.progress) watcher.progress({1, "done"});
   return result;
 }
@@ -121,9 +130,9 @@ absl::StatusOr<v1::ActivationResult> Fit(const SeriesChoice& choice,
                                          const std::filesystem::path& folder,
                                          const Watcher& watcher) {
   EYEBOX_ASSIGN_OR_RETURN(const Bench bench, OpenBench(choice, watcher.Part(0, 0.4)));
-  EYEBOX_ASSIGN_OR_RETURN(
-      const MeasuredLevels levels,
-      ReduceGreyLevels(*bench.reader, bench.series, bench.calibration, watcher.Part(0.4, 0.9)));
+  EYEBOX_ASSIGN_OR_RETURN(const MeasuredLevels levels,
+                          ReduceGreyLevels(*bench.reader, bench.series, bench.calibration,
+                                           watcher.Part(0.4, 0.9), bench.glare));
   EYEBOX_RETURN_IF_ERROR(watcher.Reach(0.9, "activation"));
   EYEBOX_ASSIGN_OR_RETURN(const fit::ActivationChoice activation,
                           fit::ChooseActivation(levels.series, options));

@@ -11,6 +11,7 @@
 #include "fit/activation/fit_activation.h"
 #include "fit/cube/design_table.h"
 #include "service/steps/levels.h"
+#include "service/steps/take_scatter_out.h"
 #include "service/watcher.h"
 
 namespace eyebox::service {
@@ -20,6 +21,7 @@ struct SeriesChoice {
   std::optional<std::string> series;  // the main one, or the only one, unless given
   // Folder of the characterised sensor; empty: the copy in the recording, if there is one.
   std::filesystem::path sensor = {};
+  ScatterChoice scatter = {};   // to be taken out of the luminance
   BracketOptions bracket = {};  // of ReduceSeries alone
 };
 

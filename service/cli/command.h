@@ -36,6 +36,7 @@ inline constexpr char kSensorHelp[] =
 void AddCapture(CLI::App& app, Work& work);
 void AddDevices(CLI::App& app, Work& work);
 void AddImport(CLI::App& app, Work& work);
+void AddScatter(CLI::App& app, Work& work);
 void AddSimulate(CLI::App& app, Work& work);
 void AddReduce(CLI::App& app, Work& work);
 void AddUniformity(CLI::App& app, Work& work);

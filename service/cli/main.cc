@@ -25,6 +25,7 @@ void AddAllCommands(CLI::App& app, Work& work) {
   AddReduce(app, work);
   AddUniformity(app, work);
   AddCharacterize(app, work);
+  AddScatter(app, work);
   AddFit(app, work);
   AddCube(app, work);
   AddVerifyFiles(app, work);

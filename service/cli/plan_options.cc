@@ -15,8 +15,16 @@ std::vector<CLI::Option*> BindPlan(CLI::App& command, capture::PlanOptions& plan
                          "Flat frames per exposure; 0: no flats"),
       command.add_option("--reference-every", plan.reference_every,
                          "Levels between two looks at the reference patch; 0: none"),
-      command.add_option("--reference-drive", plan.reference_drive,
-                         "Drive of the reference patch")};
+      command.add_option("--reference-drive", plan.reference_drive, "Drive of the reference patch"),
+      command
+          .add_option(
+              "--disks", plan.disk_diameters_deg,
+              "Diameters in deg, by comma, of bright disks that show scatter (series glare)")
+          ->delimiter(','),
+      command
+          .add_option("--black-disks", plan.black_disk_diameters_deg,
+                      "Likewise of black disks on the bright field")
+          ->delimiter(',')};
   for (CLI::Option* option : options) option->capture_default_str();
   return options;
 }

@@ -4,6 +4,7 @@
 
 #include "capture/base/status.h"
 #include "service/cli/command.h"
+#include "service/cli/scatter_options.h"
 #include "service/cli/terminal.h"
 #include "service/single_steps.h"
 
@@ -14,8 +15,9 @@ struct Options {
   std::string recording;
   std::optional<std::string> series;
   std::string sensor;
-  BracketOptions bracket;
   std::optional<double> level;
+  BracketOptions bracket;
+  ScatterChoice scatter;
   std::string out;
   bool json = false;
 };
@@ -41,10 +43,10 @@ void PrintBracket(const v1::ReduceResult& result) {
 }
 
 absl::Status Run(const Options& options) {
-  EYEBOX_ASSIGN_OR_RETURN(
-      const v1::ReduceResult result,
-      ReduceSeries({options.recording, options.series, options.sensor, options.bracket},
-                   options.level, options.out, TerminalWatcher()));
+  EYEBOX_ASSIGN_OR_RETURN(const v1::ReduceResult result,
+                          ReduceSeries({options.recording, options.series, options.sensor,
+                                        options.scatter, options.bracket},
+                                       options.level, options.out, TerminalWatcher()));
   PrintWarnings(result.warnings());
   if (options.json) return PrintJson(result);
   PrintParameters(result.parameters());
@@ -70,6 +72,7 @@ void AddReduce(CLI::App& app, Work& work) {
             ->check(CLI::Range(3.0, 100.0));
         command.add_flag("--repair", options.bracket.repair_defects,
                          "Fill defective pixels from neighbours for display; they stay masked");
+        AddScatterChoice(command, options.scatter);
         command.add_option("--out", options.out, "Write luminance, sigma and mask there as NPY");
         command.add_flag("--json", options.json, "Print the result as JSON on stdout");
       },

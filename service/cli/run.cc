@@ -5,6 +5,7 @@
 #include "service/cli/command.h"
 #include "service/cli/rig_source.h"
 #include "service/cli/run_output.h"
+#include "service/cli/scatter_options.h"
 #include "service/cli/terminal.h"
 #include "service/pipeline.h"
 
@@ -44,6 +45,7 @@ void AddRun(CLI::App& app, Work& work) {
                         "Folder of a recording, or a rig to capture with first: a .textproto file "
                         "or sim:NAME")
             ->required();
+        AddScatterChoice(command, options.output.run.scatter);
         options.output.AddTo(command, "SOURCE/results/run; of a rig: out/NAME");
         command.add_option("--recording", options.recording,
                            "Where a rig's frames go; must not exist (default: OUT/recording)");

@@ -10,6 +10,7 @@
 #include "absl/strings/str_replace.h"
 #include "capture/base/version.h"
 #include "service/results/activation.h"
+#include "service/results/contours.h"
 
 namespace eyebox::service {
 namespace {
@@ -17,7 +18,6 @@ namespace {
 constexpr int kCurvePoints = 257;
 constexpr int kErrorPoints = 600;
 constexpr double kErrorCurveFrom = 0.01;  // as a fraction of white
-constexpr int kWantedContours = 8;
 
 const v1::Parameter& Named(const google::protobuf::RepeatedPtrField<v1::Parameter>& parameters,
                            std::string_view name) {
@@ -98,19 +98,6 @@ void AddFacts(const RunFindings& findings, report::ReportInput& input) {
       {"Reduced with", "Eyebox " + std::string(kVersion)}};
 }
 
-// A step of 1, 2 or 5 times a power of ten that gives about kWantedContours lines.
-std::vector<double> Contours(const optics::FieldRange& range) {
-  const double wanted = (range.maximum - range.minimum) / kWantedContours;
-  if (!(wanted > 1e-6)) return {};
-  const double decade = std::pow(10.0, std::floor(std::log10(wanted)));
-  const double step = decade * (wanted > 5 * decade ? 10 : wanted > 2 * decade ? 5 : 2);
-  std::vector<double> levels;
-  for (double k = std::ceil(range.minimum / step); k * step < range.maximum; ++k) {
-    levels.push_back(k * step);
-  }
-  return levels;
-}
-
 // Field angles of pixels 0 ... count - 1 along one axis.
 std::vector<double> AnglesDeg(int count, double principal_px, double focal_length_px, int sign) {
   std::vector<double> angles;
@@ -121,14 +108,20 @@ std::vector<double> AnglesDeg(int count, double principal_px, double focal_lengt
   return angles;
 }
 
+std::string NameOf(const optics::SmoothField& smooth) {
+  return smooth.model == optics::FieldModel::kSpline
+             ? absl::StrFormat("bicubic spline of %d intervals", smooth.order)
+             : absl::StrFormat("polynomial of order %d", smooth.order);
+}
+
 report::MapFigure MapOf(const RunFindings& findings) {
   const optics::UniformityMap& map = findings.map;
   report::MapFigure figure;
   figure.title = "Nonuniformity g(x) of the full field";
   figure.caption = absl::StrFormat(
-      "Luminance over that at the reference point, at drive %.4g. Lines: smooth model of order %d; "
+      "Luminance over that at the reference point, at drive %.4g. Lines: smooth model, a %s; "
       "raw g scatters about it by %s rms, of which noise explains %s.",
-      findings.result.uniformity().reference_drive(), map.smooth.order,
+      findings.result.uniformity().reference_drive(), NameOf(map.smooth),
       report::Percent(map.residual_rms), report::Percent(map.residual_rms_expected));
   figure.quantity = "g";
   figure.unit = "1";
@@ -137,7 +130,7 @@ report::MapFigure MapOf(const RunFindings& findings) {
   if (map.smooth_range.minimum < map.smooth_range.maximum) {
     figure.range = report::Range{map.smooth_range.minimum, map.smooth_range.maximum};
   }
-  figure.contours = Contours(map.smooth_range);
+  figure.contours = ContourLevels(map.smooth_range);
   figure.contoured = findings.smooth_g.pixels();
   if (const auto& geometry = findings.header.geometry) {
     figure.column_deg =

@@ -5,6 +5,7 @@
 
 #include "capture/base/status.h"
 #include "service/artifacts.h"
+#include "service/results/contours.h"
 #include "service/results/parameter.h"
 #include "service/results/sigma_map.h"
 
@@ -13,6 +14,7 @@ namespace {
 
 // Beyond this, scatter of raw g about the smooth model is texture, not noise.
 constexpr double kNotedResidualExcess = 1.5;
+constexpr double kLevelsDiffer = 0.05;  // p-value
 
 double FieldAngleDeg(double offset_px, const capture::PinholeGeometry& geometry) {
   return std::atan(offset_px / geometry.focal_length_px) * 180 / std::numbers::pi;
@@ -32,24 +34,6 @@ v1::UniformityPoint Describe(const optics::PatchMean& patch,
   return point;
 }
 
-// Smallest and largest g of the smooth model over the valid pixels.
-void AddExtremes(const optics::UniformityMap& map,
-                 google::protobuf::RepeatedPtrField<v1::Parameter>& parameters) {
-  const Image<float> values = map.smooth.Values();
-  const Image<float> sigmas = map.smooth.Sigmas();
-  std::optional<size_t> lowest;
-  std::optional<size_t> highest;
-  for (size_t i = 0; i < values.pixels().size(); ++i) {
-    if (map.raw.mask.pixels()[i] != 0) continue;
-    const float g = values.pixels()[i];
-    if (!lowest || g < values.pixels()[*lowest]) lowest = i;
-    if (!highest || g > values.pixels()[*highest]) highest = i;
-  }
-  if (!lowest) return;
-  AddParameter(parameters, "g_minimum", values.pixels()[*lowest], sigmas.pixels()[*lowest], "1");
-  AddParameter(parameters, "g_maximum", values.pixels()[*highest], sigmas.pixels()[*highest], "1");
-}
-
 void AddFigures(const optics::UniformityMap& map, v1::UniformityResult& result) {
   auto& parameters = *result.mutable_parameters();
   AddParameter(parameters, "uniformity_9_point", map.nine_points.uniformity, map.nine_points.sigma,
@@ -60,7 +44,41 @@ void AddFigures(const optics::UniformityMap& map, v1::UniformityResult& result) 
                map.thirteen_points.sigma, "1");
   AddParameter(parameters, "nonuniformity_13_point", map.thirteen_points.nonuniformity,
                map.thirteen_points.sigma, "1");
-  AddExtremes(map, parameters);
+  AddParameter(parameters, "g_minimum", map.area.g.minimum, map.area.minimum_sigma, "1");
+  AddParameter(parameters, "g_maximum", map.area.g.maximum, map.area.maximum_sigma, "1");
+  AddParameter(parameters, "uniformity_area", map.area.uniformity, map.area.uniformity_sigma, "1");
+}
+
+const char* NameOf(optics::FieldModel model) {
+  return model == optics::FieldModel::kSpline ? "spline" : "polynomial";
+}
+
+void AddModels(const std::vector<optics::CrossValidated>& models, int best,
+               v1::UniformityDetail& detail) {
+  for (const optics::CrossValidated& model : models) {
+    v1::CrossValidatedModel& line = *detail.add_cross_validation();
+    line.set_model(NameOf(model.model));
+    line.set_size(model.size);
+    line.set_held_out_chi_square(model.held_out_chi2);
+    line.set_best(model.size == best);
+  }
+}
+
+void AddDetail(const optics::UniformityMap& map, v1::UniformityDetail& detail) {
+  AddModels(map.choice.polynomials, map.choice.polynomial.size, detail);
+  AddModels(map.choice.splines, map.choice.spline.size, detail);
+  detail.set_smooth_model(NameOf(map.smooth.model));
+  v1::FullFieldUniformity& field = *detail.mutable_full_field();
+  field.set_minimum(map.area.g.minimum);
+  field.set_minimum_sigma(map.area.minimum_sigma);
+  field.set_maximum(map.area.g.maximum);
+  field.set_maximum_sigma(map.area.maximum_sigma);
+  field.set_mean(map.area.mean);
+  field.set_deviation(map.area.deviation);
+  field.set_uniformity(map.area.uniformity);
+  field.set_uniformity_sigma(map.area.uniformity_sigma);
+  const auto lines = ContourLines(map.smooth.Values(), ContourLevels(map.smooth_range));
+  detail.mutable_contours()->Add(lines.begin(), lines.end());
 }
 
 absl::Status AddMaps(const optics::UniformityMap& map, const std::filesystem::path& folder,
@@ -73,6 +91,13 @@ absl::Status AddMaps(const optics::UniformityMap& map, const std::filesystem::pa
                                                        "g_smooth", "1", map.smooth.Values()));
   EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(), WriteMap(folder, "uniformity_g_smooth_sigma.npy",
                                                        "g_smooth_sigma", "1", map.smooth.Sigmas()));
+  if (!map.alternative) return absl::OkStatus();
+  EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(),
+                          WriteMap(folder, "uniformity_g_alternative.npy", "g_alternative", "1",
+                                   map.alternative->Values()));
+  EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(),
+                          WriteMap(folder, "uniformity_g_alternative_sigma.npy",
+                                   "g_alternative_sigma", "1", map.alternative->Sigmas()));
   return absl::OkStatus();
 }
 
@@ -98,6 +123,7 @@ absl::StatusOr<v1::UniformityResult> DescribeUniformity(
     *result.add_points_13() = Describe(patch, geometry);
   }
   result.set_smooth_order(map.smooth.order);
+  AddDetail(map, *result.mutable_detail());
   result.set_smooth_residual_rms(map.residual_rms);
   result.set_invalid_pixels(static_cast<int32_t>(optics::CountFlagged(map.raw, 0xFF)));
   AddAll(*result.mutable_history(), map.raw.history);
@@ -111,6 +137,41 @@ absl::StatusOr<v1::UniformityResult> DescribeUniformity(
   }
   EYEBOX_RETURN_IF_ERROR(AddMaps(map, folder, result));
   return result;
+}
+
+void AddScatterRemoval(const optics::GlareRemovalFigures& figures, v1::UniformityResult& result) {
+  v1::ScatterRemoval& removal = *result.mutable_detail()->mutable_scatter();
+  removal.set_removed_share(figures.removed_share);
+  removal.set_floor_median(figures.floor_median);
+  removal.set_below_floor_share(figures.below_floor_share);
+}
+
+absl::Status AddLevelIndependence(const absl::StatusOr<optics::LevelIndependence>& test,
+                                  int block_px, const std::filesystem::path& folder,
+                                  v1::UniformityResult& result) {
+  v1::LevelIndependence& message = *result.mutable_detail()->mutable_level_independence();
+  if (!test.ok()) {
+    message.set_reason(std::string(test.status().message()));
+    return absl::OkStatus();
+  }
+  message.set_chi_square(test->chi2);
+  message.set_degrees_of_freedom(test->degrees_of_freedom);
+  message.set_p_value(test->p_value);
+  message.set_independent(test->p_value >= kLevelsDiffer);
+  message.set_block_px(block_px);
+  message.set_blocks(static_cast<int32_t>(test->blocks));
+  message.set_failing_share(test->failing_share);
+  for (const optics::LevelAgainstShared& level : test->levels) {
+    v1::LevelOfIndependence& line = *message.add_levels();
+    line.set_drive(level.drive);
+    line.set_luminance(level.luminance);
+    line.set_chi_square(level.chi2);
+    line.set_excess_relative(level.excess_relative);
+  }
+  AddParameter(*result.mutable_parameters(), "level_independence_p_value", test->p_value, 0, "1");
+  EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(), WriteMap(folder, "uniformity_level_p_value.npy",
+                                                       "level_p_value", "1", test->block_p_value));
+  return absl::OkStatus();
 }
 
 }  // namespace eyebox::service

@@ -8,16 +8,25 @@
 #include "absl/status/statusor.h"
 #include "capture/recording/header.h"
 #include "eyebox/v1/results.pb.h"
+#include "optics/scatter/known_glare.h"
+#include "optics/uniformity/level_independence.h"
 #include "optics/uniformity/uniformity_map.h"
 
 namespace eyebox::service {
 
-// Writes uniformity_g.npy, uniformity_g_sigma.npy, uniformity_g_smooth.npy and
-// uniformity_g_smooth_sigma.npy into `folder` unless it is empty.
+// Writes g raw and smooth, and the smooth model of the other kind, each with its sigma, as
+// uniformity_g*.npy into `folder` unless it is empty.
 absl::StatusOr<v1::UniformityResult> DescribeUniformity(
     const optics::UniformityMap& map, const optics::LuminanceImage& full_field,
     double reference_drive, const std::optional<capture::PinholeGeometry>& geometry,
     const std::filesystem::path& folder);
+
+void AddScatterRemoval(const optics::GlareRemovalFigures& figures, v1::UniformityResult& result);
+
+// The test, or why there is none; its map uniformity_level_p_value.npy likewise.
+absl::Status AddLevelIndependence(const absl::StatusOr<optics::LevelIndependence>& test,
+                                  int block_px, const std::filesystem::path& folder,
+                                  v1::UniformityResult& result);
 
 }  // namespace eyebox::service
 

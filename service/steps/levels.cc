@@ -9,6 +9,8 @@
 #include "absl/strings/str_join.h"
 #include "capture/base/status.h"
 #include "optics/reduce/clip_stack.h"
+#include "optics/reduce/flat_variance.h"
+#include "optics/uniformity/cross_validate.h"
 #include "service/steps/drift.h"
 #include "service/steps/reference_disk.h"
 
@@ -17,6 +19,7 @@ namespace {
 
 // A level that lost more of the field than this says nothing about the field.
 constexpr double kLargestInvalidShare = 0.5;
+constexpr int kBlocksAlong = 24;
 
 double DriveOf(const StimulusCaptures& group) { return (*group.stimulus.drive)[0]; }
 
@@ -58,8 +61,11 @@ absl::StatusOr<double> CorrectForDrift(capture::RecordingReader& recording,
   return drift.SigmaAt(time_s) / drift.FactorAt(time_s);
 }
 
-void AddToStack(const optics::ReducedLevel& level, double drive, MeasuredLevels& levels) {
+void AddToStack(const optics::ReducedLevel& level, double drive,
+                const optics::Calibration& calibration, MeasuredLevels& levels) {
   const optics::MeasuredImage& image = level.luminance.image;
+  levels.blocks.push_back(
+      {drive, optics::Binned(optics::WithoutFlat(image, calibration), LevelBlockPx(image.size()))});
   const auto values = image.value.pixels();
   levels.size = image.size();
   levels.drives.push_back(drive);
@@ -115,10 +121,14 @@ absl::StatusOr<optics::ReducedLevel> ReduceCaptures(capture::RecordingReader& re
   return level;
 }
 
+int LevelBlockPx(ImageSize size) {
+  return std::max(1, std::max(size.width_px, size.height_px) / kBlocksAlong);
+}
+
 absl::StatusOr<MeasuredLevels> ReduceGreyLevels(capture::RecordingReader& recording,
                                                 const std::string& series,
                                                 const optics::Calibration& calibration,
-                                                const Watcher& watcher) {
+                                                const Watcher& watcher, const KnownGlare& glare) {
   EYEBOX_ASSIGN_OR_RETURN(const auto groups, GreyLevels(recording, series));
   EYEBOX_ASSIGN_OR_RETURN(const MeasuredDrift drift, MeasureDrift(recording));
   MeasuredLevels levels;
@@ -134,14 +144,15 @@ absl::StatusOr<MeasuredLevels> ReduceGreyLevels(capture::RecordingReader& record
       levels.warnings.push_back(WhyUnusable(groups[i], *reduced));
       continue;
     }
+    EYEBOX_ASSIGN_OR_RETURN(const auto figures, TakeScatterOut(glare, *reduced));
     const double drive = DriveOf(groups[i]);
     scale_relative_sigma = reduced->luminance.scale_relative_sigma;
     EYEBOX_ASSIGN_OR_RETURN(const double drift_sigma,
                             CorrectForDrift(recording, groups[i], drift.drift, reduced->luminance));
     readings.push_back(ReadReferenceDisk(reduced->luminance, calibration, drive));
     readings.back().relative_sigma = drift_sigma;
-    AddToStack(*reduced, drive, levels);
-    levels.reference = {drive, *std::move(reduced)};
+    AddToStack(*reduced, drive, calibration, levels);
+    levels.reference = {drive, *std::move(reduced), figures};
   }
   if (readings.empty()) return NoUsableLevel(levels.warnings);
   levels.warnings.insert(levels.warnings.begin(), drift.warnings.begin(), drift.warnings.end());
@@ -155,7 +166,7 @@ absl::StatusOr<MeasuredLevels> ReduceGreyLevels(capture::RecordingReader& record
 absl::StatusOr<GreyLevel> ReduceBrightestLevel(capture::RecordingReader& recording,
                                                const std::string& series,
                                                const optics::Calibration& calibration,
-                                               const Watcher& watcher) {
+                                               const Watcher& watcher, const KnownGlare& glare) {
   EYEBOX_ASSIGN_OR_RETURN(auto groups, GreyLevels(recording, series));
   std::reverse(groups.begin(), groups.end());
   EYEBOX_ASSIGN_OR_RETURN(const MeasuredDrift drift, MeasureDrift(recording));
@@ -169,7 +180,8 @@ absl::StatusOr<GreyLevel> ReduceBrightestLevel(capture::RecordingReader& recordi
     if (IsUsable(*reduced)) {
       EYEBOX_RETURN_IF_ERROR(
           CorrectForDrift(recording, groups[i], drift.drift, reduced->luminance).status());
-      return GreyLevel{DriveOf(groups[i]), *std::move(reduced)};
+      EYEBOX_ASSIGN_OR_RETURN(const auto figures, TakeScatterOut(glare, *reduced));
+      return GreyLevel{DriveOf(groups[i]), *std::move(reduced), figures};
     }
     reasons.push_back(WhyUnusable(groups[i], *reduced));
   }

@@ -12,7 +12,9 @@
 #include "fit/activation/level_series.h"
 #include "fit/field/common_exponent.h"
 #include "optics/reduce/reduce_level.h"
+#include "optics/uniformity/level_independence.h"
 #include "service/steps/captures.h"
+#include "service/steps/take_scatter_out.h"
 #include "service/watcher.h"
 
 namespace eyebox::service {
@@ -20,16 +22,21 @@ namespace eyebox::service {
 struct GreyLevel {
   double drive = 0;
   optics::ReducedLevel reduced;
+  std::optional<optics::GlareRemovalFigures> glare;  // where scatter was taken out
 };
+
+// A side of the blocks in which levels are compared: about 24 along the longer side.
+int LevelBlockPx(ImageSize size);
 
 struct MeasuredLevels {
   fit::LevelSeries series;  // at the reference point, see reference_disk.h
   GreyLevel reference;      // the brightest level: g is measured there
   ImageSize size;
-  std::vector<double> drives;         // [levels], ascending
-  std::vector<float> luminance;       // [levels, height * width]; NaN where a pixel has no value
-  std::vector<uint8_t> valid;         // [height * width], 1 where every level has a value
-  std::vector<std::string> warnings;  // levels that were left out, and why
+  std::vector<double> drives;    // [levels], ascending
+  std::vector<float> luminance;  // [levels, height * width]; NaN where a pixel has no value
+  std::vector<uint8_t> valid;    // [height * width], 1 where every level has a value
+  std::vector<optics::LevelBlocks> blocks;  // for the test whether g is the same at all levels
+  std::vector<std::string> warnings;        // levels that were left out, and why
 
   fit::FieldStack Field() const { return {drives, luminance, valid}; }
 };
@@ -58,13 +65,15 @@ absl::StatusOr<optics::ReducedLevel> ReduceCaptures(capture::RecordingReader& re
 absl::StatusOr<MeasuredLevels> ReduceGreyLevels(capture::RecordingReader& recording,
                                                 const std::string& series,
                                                 const optics::Calibration& calibration,
-                                                const Watcher& watcher);
+                                                const Watcher& watcher,
+                                                const KnownGlare& glare = {});
 
 // The brightest usable level alone. Errors: as ReduceGreyLevels.
 absl::StatusOr<GreyLevel> ReduceBrightestLevel(capture::RecordingReader& recording,
                                                const std::string& series,
                                                const optics::Calibration& calibration,
-                                               const Watcher& watcher);
+                                               const Watcher& watcher,
+                                               const KnownGlare& glare = {});
 
 }  // namespace eyebox::service
 

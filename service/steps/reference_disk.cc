@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "capture/base/status.h"
+#include "optics/reduce/flat_variance.h"
 #include "optics/uniformity/uniformity_map.h"
 
 namespace eyebox::service {
@@ -66,12 +67,7 @@ DiskReading ReadReferenceDisk(const optics::LuminanceImage& image,
   for (const size_t i : ReferenceDiskPixels(image.image.size())) {
     const double luminance = image.image.value.pixels()[i];  // NaN where masked
     const double variance = image.image.variance.pixels()[i];
-    double flat = 0;
-    if (calibration.flat) {
-      const optics::MeasuredImage& response = calibration.flat->response;
-      const double relative = luminance / response.value.pixels()[i];
-      flat = relative * relative * response.variance.pixels()[i];
-    }
+    const double flat = optics::FlatVariance(luminance, calibration, i);
     level.luminance.push_back(luminance);
     // Single precision may lose the difference where the flat is nearly all of the variance.
     level.own_variance.push_back(std::max(variance - flat, 1e-6 * variance));

@@ -153,8 +153,10 @@ TEST(UniformityTest, OrderThatTheValidPixelsCannotDetermineIsRejected) {
     }
   }
   BlankMaskedPixels(field.image);
-  EXPECT_EQ(FitSmoothField(field.image, FieldModel::kPolynomial, 4).status().code(), absl::StatusCode::kFailedPrecondition);
-  EXPECT_EQ(FitSmoothField(field.image, FieldModel::kPolynomial, 9).status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_EQ(FitSmoothField(field.image, FieldModel::kPolynomial, 4).status().code(),
+            absl::StatusCode::kFailedPrecondition);
+  EXPECT_EQ(FitSmoothField(field.image, FieldModel::kPolynomial, 9).status().code(),
+            absl::StatusCode::kInvalidArgument);
 }
 
 }  // namespace

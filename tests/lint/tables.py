@@ -43,6 +43,8 @@ THIRD_PARTY = [
     Library("xxHash", r"xxhash\.h|xxh3\.h", ("capture/*.cc",)),
     Library("OpenCV core", r"opencv2/core(/.*)?(\.hpp)?", ("capture/*.cc", "optics/*.cc")),
     Library("OpenCV imgproc, calib3d", r"opencv2/(imgproc|calib3d)(/.*)?\.hpp", ("optics/*.cc",)),
+    # Markers of a ChArUco board, which tell a partial view.
+    Library("OpenCV aruco", r"opencv2/aruco(/.*)?\.hpp", ("optics/geometry/*.cc",)),
     Library("libpng", r"png\.h", ("capture/base/png.cc",)),
     # OpenCV decodes 8-bit TIFF by a call that goes on after errors and fills in black.
     Library("libtiff", r"tiffio\.h", ("capture/base/tiff.cc",)),

@@ -132,6 +132,17 @@ TEST(FindDots, NamesTheGridThatIsThere) {
 
 constexpr CharucoBoard kBoard = {.columns = 8, .rows = 6, .square_mm = 10, .marker_mm = 7};
 
+// Half as many pixels as NarrowLens() has, across and down.
+CameraModel SmallNarrowLens() {
+  CameraModel lens = NarrowLens();
+  lens.size = {320, 240};
+  for (double* length : {&lens.focal_length_x_px, &lens.focal_length_y_px, &lens.principal_x_px,
+                         &lens.principal_y_px}) {
+    *length /= 2;
+  }
+  return lens;
+}
+
 struct Print {
   Image<double> drawn;
   double operator()(double x_mm, double y_mm) const {  // the middle of the board is 0, 0
@@ -147,7 +158,7 @@ struct Print {
 };
 
 TEST(FindCharuco, PartialViewsCalibrateAPinhole) {
-  const CameraModel lens = NarrowLens();
+  const CameraModel lens = SmallNarrowLens();
   const Print print{*DrawCharuco(kBoard, 40)};
   std::vector<ViewPoints> views;
   size_t partial = 0;
@@ -172,7 +183,7 @@ TEST(FindCharuco, PartialViewsCalibrateAPinhole) {
 }
 
 TEST(FindCharuco, NamesTheBoardThatItIsNot) {
-  const CameraModel lens = NarrowLens();
+  const CameraModel lens = SmallNarrowLens();
   const Print print{*DrawCharuco(kBoard, 40)};
   const Image<double> view = Photograph(lens, At(0, 0, 130, 5, 5, 0), 1, 10, print);
   CharucoBoard other = kBoard;

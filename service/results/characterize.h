@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "absl/status/statusor.h"
-#include "eyebox/v1/results.pb.h"
+#include "eyebox/v1/characterize.pb.h"
 #include "optics/sensor/sensor_characterisation.h"
 #include "service/steps/characterize.h"
 

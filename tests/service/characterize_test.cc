@@ -6,6 +6,7 @@
 #include <fstream>
 #include <string>
 
+#include "eyebox/v1/characterize.pb.h"
 #include "eyebox/v1/results.pb.h"
 #include "service/results/characterize.h"
 #include "tests/optics/emva1288/camera.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "Eigen/Core"
@@ -92,6 +93,17 @@ double Misfit(const Markers& markers, const cv::aruco::CharucoBoard& board) {
   return std::sqrt((design * fit - image).squaredNorm() / static_cast<double>(count)) / square_px;
 }
 
+// Clutter and noise are taken for a marker now and then, of any number.
+void DropForeign(size_t count, Markers& markers) {
+  Markers kept;
+  for (size_t i = 0; i < markers.ids.size(); ++i) {
+    if (markers.ids[i] >= static_cast<int>(count)) continue;
+    kept.ids.push_back(markers.ids[i]);
+    kept.corners.push_back(markers.corners[i]);
+  }
+  markers = std::move(kept);
+}
+
 absl::StatusOr<Markers> FindMarkers(const cv::Mat1b& grey,
                                     const cv::Ptr<cv::aruco::CharucoBoard>& board,
                                     std::string_view source) {
@@ -103,10 +115,12 @@ absl::StatusOr<Markers> FindMarkers(const cv::Mat1b& grey,
     return Rejected(source, "shows no marker of the board's dictionary",
                     "give the marker bits of the board, and a sharp view of it");
   }
-  const int largest = *std::ranges::max_element(markers.ids);
   const auto size = board->getChessboardSize();
   const std::string named = absl::StrCat(size.width, " x ", size.height, " squares");
-  if (largest >= static_cast<int>(board->ids.size())) {
+  const int largest = *std::ranges::max_element(markers.ids);
+  const size_t found = markers.ids.size();
+  DropForeign(board->ids.size(), markers);
+  if (2 * markers.ids.size() <= found) {
     return Rejected(source,
                     absl::StrCat("shows marker ", largest, ", a board of ", named,
                                  " ends with marker ", board->ids.size() - 1),

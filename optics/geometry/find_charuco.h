@@ -20,8 +20,8 @@ struct CharucoBoard {
 };
 
 // Corners by ID, in the board's plane from its upper left corner.
-// Errors: InvalidArgument (a board that cannot be), FailedPrecondition (no markers, markers of a
-// larger board, fewer than 6 corners, corners that do not lie as those of this board).
+// Errors: InvalidArgument (a board that cannot be), FailedPrecondition (no markers, or most of
+// them of a larger board, fewer than 6 corners, corners that do not lie as those of this board).
 absl::StatusOr<ViewPoints> FindCharuco(const Image<double>& view, const CharucoBoard& board,
                                        std::string_view source);
 

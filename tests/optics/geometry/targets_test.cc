@@ -189,7 +189,7 @@ TEST(FindCharuco, NamesTheBoardThatItIsNot) {
   CharucoBoard other = kBoard;
   other.columns = 7;
   EXPECT_THAT(FindCharuco(view, other, "board.png").status().message(),
-              HasSubstr("board.png: shows marker"));
+              HasSubstr("board.png: its markers do not lie as on a board of 7 x 6 squares"));
   other.columns = 9;
   EXPECT_THAT(FindCharuco(view, other, "board.png").status().message(),
               HasSubstr("do not lie as on a board of 9 x 6 squares"));

@@ -1,3 +1,5 @@
+#include "fit/cube/cube_text.h"
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -16,13 +18,6 @@ void AppendNumber(std::string& text, double value) {
   text.append(digits.data(), end);
 }
 
-void AppendTriplet(std::string& text, const std::array<double, 3>& triplet) {
-  for (size_t i = 0; i < 3; ++i) {
-    AppendNumber(text, triplet[i]);
-    text.push_back(i < 2 ? ' ' : '\n');
-  }
-}
-
 void AppendDomain(std::string& text, const Cube3d& cube) {
   const Cube3d usual;
   if (cube.domain_min == usual.domain_min && cube.domain_max == usual.domain_max) return;
@@ -33,6 +28,13 @@ void AppendDomain(std::string& text, const Cube3d& cube) {
 }
 
 }  // namespace
+
+void AppendTriplet(std::string& text, const std::array<double, 3>& triplet) {
+  for (size_t i = 0; i < 3; ++i) {
+    AppendNumber(text, triplet[i]);
+    text.push_back(i < 2 ? ' ' : '\n');
+  }
+}
 
 std::string EncodeCube(const Cube3d& cube) {
   std::string text;

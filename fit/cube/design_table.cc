@@ -1,5 +1,6 @@
 #include "fit/cube/design_table.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -9,8 +10,10 @@
 #include "fit/cube/certificate.h"
 #include "fit/cube/goal.h"
 #include "fit/cube/minimax.h"
+#include "fit/cube/published.h"
 #include "fit/cube/rounding.h"
 #include "fit/cube/sampling.h"
+#include "fit/cube/stored_minimax.h"
 
 namespace eyebox::fit {
 namespace {
@@ -18,6 +21,7 @@ namespace {
 constexpr int kSmallestSize = 2;
 constexpr int kLargestCube = 129;
 constexpr int kLargestStrip = 32;
+constexpr int kGammaTable = 256;
 constexpr int kMostSamples = 10'000'000;
 
 absl::Status CheckActivation(const Activation& activation) {
@@ -41,9 +45,21 @@ absl::Status CheckActivation(const Activation& activation) {
   return refuse("gamma", gamma, "give an exponent above 0");
 }
 
-absl::Status CheckSize(TableTarget target, int size) {
+absl::Status CheckSize(TableTarget target, DesignMethod method, int size) {
+  if (target == TableTarget::kPtb && size != kGammaTable) {
+    return BadInput("table size", absl::StrCat(size, " is not 256"),
+                    "target ptb has one entry for each 8-bit value: give size 256");
+  }
+  if (target == TableTarget::kHdrp && method == DesignMethod::kPublished &&
+      size != kPublishedSize) {
+    return BadInput("table size",
+                    absl::StrCat(size, " has no published knots, only ", kPublishedSize),
+                    "give size 32 or design by minimax");
+  }
   const int largest = target == TableTarget::kPps ? kLargestStrip : kLargestCube;
-  if (size >= kSmallestSize && size <= largest) return absl::OkStatus();
+  if (target == TableTarget::kPtb || (size >= kSmallestSize && size <= largest)) {
+    return absl::OkStatus();
+  }
   return BadInput("table size",
                   absl::StrCat(size, " is outside ", kSmallestSize, " to ", largest, " for target ",
                                std::string(NameOf(target))),
@@ -59,13 +75,58 @@ absl::Status CheckWhite(TableTarget target, double white_u) {
                   "let white stand for a smaller rendered value");
 }
 
+// What takes part in the design, so that no one believes what was not done.
+absl::Status CheckDesignedFor(TableTarget target, const DesignOptions& options) {
+  if (options.designed_for.IsExact()) return absl::OkStatus();
+  EYEBOX_RETURN_IF_ERROR(CheckStorage(target, options.designed_for));
+  const bool can = target == TableTarget::kHdrp || target == TableTarget::kResolve;
+  if (can && options.method == DesignMethod::kMinimax) return absl::OkStatus();
+  return BadInput("DesignOptions.designed_for",
+                  absl::StrCat(NameOf(options.designed_for), " is not taken into account by ",
+                               std::string(NameOf(options.method)), " tables for ",
+                               std::string(NameOf(target))),
+                  "certify the finished table after that storage instead");
+}
+
 // What the file will hold, so that the certificate speaks of that.
 std::vector<double> AsFloat32(std::vector<double> entries) {
   for (double& entry : entries) entry = static_cast<float>(entry);
   return entries;
 }
 
+std::vector<double> Designed(const Activation& activation, const TableDesign& table,
+                             const DesignOptions& options) {
+  if (table.target == TableTarget::kPtb) {
+    std::vector<double> entries = IdealEntries(activation, table.target, table.size, table.white_u);
+    for (double& entry : entries) entry = std::min(entry, 1.0);
+    return entries;
+  }
+  const std::vector<DesignPoint> points =
+      DesignPoints(activation, table.target, table.size, table.white_u, options.u_from);
+  std::vector<double> entries =
+      MinimaxEntries(activation, table.target, table.size, table.white_u, points);
+  if (table.target == TableTarget::kPps) return RoundTo8Bits(activation, entries, points);
+  if (options.designed_for.IsExact()) return entries;
+  return StoredMinimaxEntries(activation, table.target, table.white_u, options.u_from,
+                              options.designed_for, std::move(entries));
+}
+
+std::vector<double> Published(const Activation& activation, const TableDesign& table) {
+  std::vector<double> entries =
+      PublishedEntries(activation, table.target, table.size, table.white_u);
+  const bool is_strip = table.target == TableTarget::kPps;
+  for (double& entry : entries) {
+    if (is_strip || table.target == TableTarget::kPtb) entry = std::min(entry, 1.0);
+    if (is_strip) entry = std::round(255 * entry) / 255;
+  }
+  return entries;
+}
+
 }  // namespace
+
+std::string_view NameOf(DesignMethod method) {
+  return method == DesignMethod::kMinimax ? "minimax" : "published";
+}
 
 std::string_view NameOf(TableTarget target) {
   switch (target) {
@@ -75,16 +136,19 @@ std::string_view NameOf(TableTarget target) {
       return "pps";
     case TableTarget::kResolve:
       return "resolve";
+    case TableTarget::kPtb:
+      return "ptb";
   }
   return "unknown";
 }
 
 absl::StatusOr<TableTarget> TableTargetOf(std::string_view name) {
-  for (TableTarget target : {TableTarget::kHdrp, TableTarget::kPps, TableTarget::kResolve}) {
+  for (TableTarget target :
+       {TableTarget::kHdrp, TableTarget::kPps, TableTarget::kResolve, TableTarget::kPtb}) {
     if (name == NameOf(target)) return target;
   }
   return BadInput("table target", "\"" + std::string(name) + "\" is none",
-                  "give hdrp, pps or resolve");
+                  "give hdrp, pps, resolve or ptb");
 }
 
 absl::Status DesignOptions::Validate() const {
@@ -105,18 +169,21 @@ absl::StatusOr<TableDesign> DesignTable(const Activation& activation, TableTarge
                                         const DesignOptions& options) {
   EYEBOX_RETURN_IF_ERROR(options.Validate());
   EYEBOX_RETURN_IF_ERROR(CheckActivation(activation));
-  EYEBOX_RETURN_IF_ERROR(CheckSize(target, size));
+  EYEBOX_RETURN_IF_ERROR(CheckSize(target, options.method, size));
   EYEBOX_RETURN_IF_ERROR(CheckWhite(target, options.white_u));
+  EYEBOX_RETURN_IF_ERROR(CheckDesignedFor(target, options));
   TableDesign table;
   table.target = target;
+  table.method = options.method;
+  table.designed_for = options.designed_for;
   table.size = size;
   table.white_u = options.white_u;
   for (int i = 0; i < size; ++i) table.knots_u.push_back(UAtPosition(target, size, i));
-  const std::vector<DesignPoint> points =
-      DesignPoints(activation, target, size, options.white_u, options.u_from);
-  std::vector<double> entries = MinimaxEntries(activation, target, size, options.white_u, points);
-  table.entries = target == TableTarget::kPps ? RoundTo8Bits(activation, entries, points)
-                                              : AsFloat32(std::move(entries));
+  std::vector<double> entries = options.method == DesignMethod::kPublished
+                                    ? Published(activation, table)
+                                    : Designed(activation, table, options);
+  // The strip holds k / 255, which float32 would only blur.
+  table.entries = target == TableTarget::kPps ? entries : AsFloat32(std::move(entries));
   table.u_cutoff = CutoffOf(activation);
   table.certificate = Certify(table, activation, options);
   return table;

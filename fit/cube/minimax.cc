@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "fit/cube/bisection.h"
 #include "fit/cube/chain.h"
 #include "fit/cube/goal.h"
 #include "fit/cube/sampling.h"
@@ -15,8 +16,6 @@ namespace {
 constexpr int kPointsPerInterval = 48;
 constexpr int kPointsAtLeast = 512;
 constexpr int kLogPoints = 512;
-constexpr double kErrorResolution = 1e-4;  // relative, of the bisection
-constexpr double kErrorNotWorthReducing = 1e-9;
 // An entry above white is held down by few points, if any. It stays within what half floats, the
 // usual storage of such a table, can hold.
 constexpr double kRoomAboveIdeal = 4;
@@ -38,9 +37,7 @@ class Chain {
     problem_.intervals.resize(static_cast<size_t>(entries) - 1);
     for (int i = 0; i < entries; ++i) {
       const double entry = ideal[static_cast<size_t>(first_ + i)];
-      const double cap = target == TableTarget::kPps
-                             ? 1
-                             : std::min(kRoomAboveIdeal * std::max(1.0, entry), kLargestHalf);
+      const double cap = LargestEntry(target, entry);
       problem_.cap.push_back(cap);
       problem_.preferred.push_back(std::min(entry, cap));
     }
@@ -89,23 +86,20 @@ class Chain {
   ChainProblem problem_;
 };
 
-std::vector<double> SmallestWorstError(Chain& chain) {
-  std::vector<double> best = chain.Preferred();
-  double reached = chain.WorstError(best);
-  double out_of_reach = 0;
-  while (reached > kErrorNotWorthReducing && reached - out_of_reach > kErrorResolution * reached) {
-    const double middle = out_of_reach + (reached - out_of_reach) / 2;
-    if (std::optional<std::vector<double>> entries = chain.Within(middle)) {
-      best = *std::move(entries);
-      reached = middle;
-    } else {
-      out_of_reach = middle;
-    }
-  }
-  return best;
+}  // namespace
+
+double LargestEntry(TableTarget target, double ideal) {
+  if (target == TableTarget::kPps) return 1;
+  return std::min(kRoomAboveIdeal * std::max(1.0, ideal), kLargestHalf);
 }
 
-}  // namespace
+void InsertDesigned(const std::vector<double>& designed, size_t first, TableTarget target,
+                    std::vector<double>& entries) {
+  std::ranges::copy(designed, entries.begin() + static_cast<std::ptrdiff_t>(first));
+  for (size_t i = 0; i < first; ++i) entries[i] = std::min(entries[i], designed.front());
+  const double white = std::max(EntryOfDrive(target, 1), designed.back());
+  for (size_t i = first + designed.size(); i < entries.size(); ++i) entries[i] = white;
+}
 
 std::vector<DesignPoint> DesignPoints(const Activation& activation, TableTarget target, int size,
                                       double white_u, double x_from) {
@@ -148,13 +142,7 @@ std::vector<double> MinimaxEntries(const Activation& activation, TableTarget tar
                                    double white_u, const std::vector<DesignPoint>& points) {
   std::vector<double> entries = IdealEntries(activation, target, size, white_u);
   Chain chain(activation, target, points, entries);
-  const std::vector<double> designed = SmallestWorstError(chain);
-  const size_t first = chain.first();
-  const size_t end = first + designed.size();
-  std::ranges::copy(designed, entries.begin() + static_cast<std::ptrdiff_t>(first));
-  for (size_t i = 0; i < first; ++i) entries[i] = std::min(entries[i], designed.front());
-  const double white = std::max(EntryOfDrive(target, 1), designed.back());
-  for (size_t i = end; i < entries.size(); ++i) entries[i] = white;
+  InsertDesigned(SmallestWorstError(chain), chain.first(), target, entries);
   return entries;
 }
 

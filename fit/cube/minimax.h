@@ -32,6 +32,13 @@ std::vector<double> IdealEntries(const Activation& activation, TableTarget targe
 std::vector<double> MinimaxEntries(const Activation& activation, TableTarget target, int size,
                                    double white_u, const std::vector<DesignPoint>& points);
 
+// How large the design may make an entry whose ideal value is `ideal`.
+double LargestEntry(TableTarget target, double ideal);
+
+// Puts `designed` in at `first`; what lies below never exceeds it, what lies above holds white.
+void InsertDesigned(const std::vector<double>& designed, size_t first, TableTarget target,
+                    std::vector<double>& entries);
+
 }  // namespace eyebox::fit
 
 #endif  // EYEBOX_FIT_CUBE_MINIMAX_H_

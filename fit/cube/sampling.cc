@@ -11,7 +11,8 @@ namespace eyebox::fit {
 double PositionOf(TableTarget target, int size, double u) {
   const double axis =
       target == TableTarget::kHdrp ? optics::LinearToLogC(u) : std::clamp(u, 0.0, 1.0);
-  return axis * (size - 1);
+  const double position = axis * (size - 1);
+  return target == TableTarget::kPtb ? std::round(position) : position;
 }
 
 double UAtPosition(TableTarget target, int size, double position) {

@@ -9,7 +9,8 @@
 
 namespace eyebox::fit {
 
-// Position of the rendered value `u` on the table's axis, in [0, size - 1]; entry i lies at i.
+// Position of the rendered value `u` on the table's axis, in [0, size - 1]; entry i lies at i. A
+// whole number for kPtb.
 double PositionOf(TableTarget target, int size, double u);
 // Its inverse.
 double UAtPosition(TableTarget target, int size, double position);

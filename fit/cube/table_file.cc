@@ -4,6 +4,7 @@
 #include "capture/base/file.h"
 #include "capture/base/status.h"
 #include "fit/cube/cube_parser.h"
+#include "fit/cube/gamma_table.h"
 
 namespace eyebox::fit {
 namespace {
@@ -33,6 +34,7 @@ absl::StatusOr<Cube3d> ReadCube(const std::filesystem::path& file) {
 
 absl::StatusOr<std::string> EncodeTable(const TableDesign& table) {
   if (table.target == TableTarget::kPps) return EncodeStrip(table);
+  if (table.target == TableTarget::kPtb) return EncodeGammaTable(table);
   return EncodeCube(ToCube(table, absl::StrCat("Eyebox, for ", std::string(NameOf(table.target)),
                                                ", size ", table.size)));
 }

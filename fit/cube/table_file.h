@@ -41,7 +41,7 @@ absl::StatusOr<std::string> EncodeStrip(const Cube3d& cube);
 // file.
 absl::StatusOr<Cube3d> ReadStrip(const std::filesystem::path& file);
 
-// The bytes of the file that the target loads: .cube text or PNG.
+// The bytes of the file that the target loads: .cube text, PNG, or the text of gamma_table.h.
 absl::StatusOr<std::string> EncodeTable(const TableDesign& table);
 
 }  // namespace eyebox::fit

@@ -64,10 +64,11 @@ TEST(DesignLimitsTest, WhiteBeyondTheAxisIsRefused) {
 }
 
 TEST(DesignLimitsTest, TargetsHaveNames) {
-  for (TableTarget target : {TableTarget::kHdrp, TableTarget::kPps, TableTarget::kResolve}) {
+  for (TableTarget target :
+       {TableTarget::kHdrp, TableTarget::kPps, TableTarget::kResolve, TableTarget::kPtb}) {
     EXPECT_EQ(*TableTargetOf(NameOf(target)), target);
   }
-  ExpectRefused(TableTargetOf("HDRP").status(), "hdrp, pps or resolve");
+  ExpectRefused(TableTargetOf("HDRP").status(), "hdrp, pps, resolve or ptb");
 }
 
 // The ends of what a display, a scene and a project can be.

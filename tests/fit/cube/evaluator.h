@@ -112,6 +112,31 @@ inline Errors Measure(const Display& display, const Cube3d& cube, TableTarget ta
   });
 }
 
+// u_i of table 2(b) of the HDRP model paper (its eighth, misprinted, as monotonicity demands).
+inline constexpr std::array<Real, 32> kPublishedKnots = {
+    -1,      0,       1.657e-9, 0.002830, 0.007137, 0.01269, 0.02051, 0.03086,
+    0.04479, 0.06444, 0.08989,  0.1252,   0.1726,   0.2370,  0.3253,  0.4422,
+    0.6039,  0.8207,  1.104,    1.495,    2.032,    2.756,   3.738,   5.083,
+    6.864,   9.347,   12.62,    17.18,    23.24,    31.48,   42.75,   57.66};
+
+inline Real Ideal(const Display& display, Real x) {
+  const Real w = display.minimum / display.range;
+  const Real h = std::max<Real>((1 + w) * x - w, 0);
+  const Real v = display.cutoff + (1 - display.cutoff) * std::pow(h, 1 / display.gamma);
+  return v <= 0.04045L ? v / 12.92L : std::pow((v + 0.055L) / 1.055L, 2.4L);
+}
+
+// The published method: f at its knots, continued above white, as the renderer samples it.
+inline Errors PublishedMethod(const Display& display, Real from, int samples) {
+  return Measure(display, from, samples, [&](Real u) {
+    const Real position = 31 * HdrpAxis(u);
+    const size_t below = static_cast<size_t>(position);
+    const Real share = position - static_cast<Real>(below);
+    return EncodeSrgb((1 - share) * Ideal(display, kPublishedKnots[below]) +
+                      share * Ideal(display, kPublishedKnots[below + 1]));
+  });
+}
+
 }  // namespace eyebox::fit::evaluator
 
 #endif  // EYEBOX_TESTS_FIT_CUBE_EVALUATOR_H_

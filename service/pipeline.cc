@@ -31,6 +31,8 @@
 #include "service/results/report_input.h"
 #include "service/results/uniformity.h"
 #include "service/steps/calibrate.h"
+#include "service/steps/known_geometry.h"
+#include "service/steps/known_scale.h"
 #include "service/steps/levels.h"
 #include "service/steps/record_plan.h"
 #include "service/steps/sensor.h"
@@ -47,6 +49,7 @@ struct Findings {
   fit::ActivationChoice activation;
   fit::CommonExponentFit field;
   std::vector<fit::TableDesign> tables;
+  std::optional<optics::ViewGeometry> geometry;  // where it is better known than the recording says
 };
 
 absl::StatusOr<Findings> Measure(capture::RecordingReader& recording, const RunOptions& options,
@@ -55,6 +58,7 @@ absl::StatusOr<Findings> Measure(capture::RecordingReader& recording, const RunO
   EYEBOX_ASSIGN_OR_RETURN(const std::string series, ChooseSeries(recording, std::nullopt));
   EYEBOX_ASSIGN_OR_RETURN(found.calibration,
                           CalibrateCamera(recording, watcher.Part(0, 0.4), sensor));
+  EYEBOX_RETURN_IF_ERROR(UseScale(options.scale, found.calibration));
   EYEBOX_ASSIGN_OR_RETURN(const KnownGlare glare, GlareOf(options.scatter, recording.Header()));
   EYEBOX_ASSIGN_OR_RETURN(found.levels, ReduceGreyLevels(recording, series, found.calibration,
                                                          watcher.Part(0.4, 0.8), glare));
@@ -82,6 +86,7 @@ absl::Status DescribeSteps(const Findings& found, const capture::RecordingHeader
   EYEBOX_ASSIGN_OR_RETURN(*result.mutable_uniformity(),
                           DescribeUniformity(found.map, reference.reduced.luminance,
                                              reference.drive, header.geometry, out));
+  EYEBOX_RETURN_IF_ERROR(AddFieldMap(found.geometry, found.map, out, *result.mutable_uniformity()));
   EYEBOX_RETURN_IF_ERROR(AddLevelIndependence(optics::TestLevelIndependence(found.levels.blocks),
                                               LevelBlockPx(found.levels.size), out,
                                               *result.mutable_uniformity()));
@@ -155,10 +160,10 @@ absl::Status WriteJson(const std::filesystem::path& file,
 absl::Status WriteReport(const std::filesystem::path& file, const Findings& found,
                          const capture::RecordingHeader& header, const v1::RunResult& result) {
   const Image<float> smooth_g = found.map.smooth.Values();
-  EYEBOX_ASSIGN_OR_RETURN(
-      const std::string html,
-      report::RenderReport(MakeReportInput(
-          {header, result, found.map, smooth_g, found.activation.best.activation, found.tables})));
+  EYEBOX_ASSIGN_OR_RETURN(const std::string html,
+                          report::RenderReport(MakeReportInput({header, result, found.map, smooth_g,
+                                                                found.activation.best.activation,
+                                                                found.tables, found.geometry})));
   return WriteFileAtomically(file, html);
 }
 
@@ -213,8 +218,10 @@ absl::StatusOr<v1::RunResult> RunRecording(const std::filesystem::path& recordin
                                            const RunOptions& options, const Watcher& watcher) {
   EYEBOX_RETURN_IF_ERROR(ValidateOptions(options));
   EYEBOX_ASSIGN_OR_RETURN(const auto reader, capture::RecordingReader::Open(recording));
+  EYEBOX_ASSIGN_OR_RETURN(const auto geometry, KnownGeometry(recording, options.geometry));
   auto found = Measure(*reader, options, SensorFolder(recording, options.sensor), watcher);
   if (!found.ok()) return Within(recording, found.status());
+  found->geometry = geometry;
   EYEBOX_RETURN_IF_ERROR(watcher.Reach(0.95, "writing results"));
   const Certification certification = CertificationOf(recording, reader->Header());
   EYEBOX_ASSIGN_OR_RETURN(v1::RunResult result,
@@ -242,6 +249,7 @@ absl::StatusOr<v1::RunResult> RunRig(const capture::RigConfig& config,
   if (!options.preflight.empty()) {
     EYEBOX_RETURN_IF_ERROR(WritePreflight(recording, preflight));
   }
+  EYEBOX_RETURN_IF_ERROR(KeepGeometry(options.geometry, recording));
   return RunRecording(recording, out, options, watcher.Part(kCaptureShare, 1));
 }
 
@@ -264,6 +272,9 @@ absl::StatusOr<v1::RunResult> ReplayRecording(const std::filesystem::path& recor
   if (std::filesystem::exists(recording / kPreflightFile)) {
     EYEBOX_ASSIGN_OR_RETURN(const v1::PreflightResult preflight, ReadPreflight(recording));
     EYEBOX_RETURN_IF_ERROR(WritePreflight(replayed, preflight));
+  }
+  if (std::filesystem::exists(recording / kGeometryFile)) {
+    EYEBOX_RETURN_IF_ERROR(KeepGeometry(recording / kGeometryFile, replayed));
   }
   return RunRecording(replayed, out, options, watcher.Part(kCaptureShare, 1));
 }

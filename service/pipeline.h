@@ -22,6 +22,10 @@ struct RunOptions {
   // Folder of the characterised sensor; empty: that of the rig, else the copy in the recording,
   // else the sensor is estimated from the frames.
   std::filesystem::path sensor = {};
+  // scale.json and geometry.json; empty: no scale but the recording's, and the geometry that the
+  // recording keeps, if there is one. A rig that is captured keeps the geometry that is given.
+  std::filesystem::path scale = {};
+  std::filesystem::path geometry = {};
   ScatterChoice scatter = {};  // to be taken out of the luminance
 };
 

@@ -21,6 +21,8 @@
 #include "service/results/scatter.h"
 #include "service/results/uniformity.h"
 #include "service/steps/calibrate.h"
+#include "service/steps/known_geometry.h"
+#include "service/steps/known_scale.h"
 #include "service/steps/levels.h"
 #include "service/steps/sensor.h"
 #include "service/steps/within.h"
@@ -48,6 +50,7 @@ absl::StatusOr<Bench> OpenBench(const SeriesChoice& choice, const Watcher& watch
   EYEBOX_ASSIGN_OR_RETURN(
       bench.calibration,
       CalibrateCamera(*bench.reader, watcher, SensorFolder(choice.recording, choice.sensor)));
+  EYEBOX_RETURN_IF_ERROR(UseScale(choice.scale, bench.calibration));
   return bench;
 }
 
@@ -107,6 +110,7 @@ absl::StatusOr<v1::ReduceResult> Reduce(const SeriesChoice& choice, std::optiona
 absl::StatusOr<v1::UniformityResult> Map(const SeriesChoice& choice,
                                          const std::filesystem::path& folder,
                                          const Watcher& watcher) {
+  EYEBOX_ASSIGN_OR_RETURN(const auto geometry, KnownGeometry(choice.recording, choice.geometry));
   EYEBOX_ASSIGN_OR_RETURN(const Bench bench, OpenBench(choice, watcher.Part(0, 0.7)));
   EYEBOX_ASSIGN_OR_RETURN(const MeasuredLevels levels,
                           ReduceGreyLevels(*bench.reader, bench.series, bench.calibration,
@@ -118,6 +122,7 @@ absl::StatusOr<v1::UniformityResult> Map(const SeriesChoice& choice,
   EYEBOX_ASSIGN_OR_RETURN(v1::UniformityResult result,
                           DescribeUniformity(map, level.reduced.luminance, level.drive,
                                              bench.reader->Header().geometry, folder));
+  EYEBOX_RETURN_IF_ERROR(AddFieldMap(geometry, map, folder, result));
   EYEBOX_RETURN_IF_ERROR(AddLevelIndependence(optics::TestLevelIndependence(levels.blocks),
                                               LevelBlockPx(levels.size), folder, result));
   if (level.glare) AddScatterRemoval(*level.glare, result);

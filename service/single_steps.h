@@ -23,6 +23,10 @@ struct SeriesChoice {
   std::filesystem::path sensor = {};
   ScatterChoice scatter = {};   // to be taken out of the luminance
   BracketOptions bracket = {};  // of ReduceSeries alone
+  // scale.json and geometry.json; empty: no scale but the recording's, and the geometry that the
+  // recording keeps, if there is one.
+  std::filesystem::path scale = {};
+  std::filesystem::path geometry = {};
 };
 
 // Merges the bracket of one stimulus of the series: the one of this grey drive value, else the

@@ -41,6 +41,8 @@ void AddSimulate(CLI::App& app, Work& work);
 void AddReduce(CLI::App& app, Work& work);
 void AddUniformity(CLI::App& app, Work& work);
 void AddCharacterize(CLI::App& app, Work& work);
+void AddGeometry(CLI::App& app, Work& work);
+void AddPhotometry(CLI::App& app, Work& work);
 void AddFit(CLI::App& app, Work& work);
 void AddCube(CLI::App& app, Work& work);
 void AddPreflight(CLI::App& app, Work& work);

@@ -26,6 +26,8 @@ void AddAllCommands(CLI::App& app, Work& work) {
   AddUniformity(app, work);
   AddCharacterize(app, work);
   AddScatter(app, work);
+  AddGeometry(app, work);
+  AddPhotometry(app, work);
   AddFit(app, work);
   AddCube(app, work);
   AddVerifyFiles(app, work);

@@ -1,9 +1,11 @@
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 #include <string>
 
 #include "capture/base/status.h"
 #include "service/cli/command.h"
+#include "service/cli/known_options.h"
 #include "service/cli/scatter_options.h"
 #include "service/cli/terminal.h"
 #include "service/single_steps.h"
@@ -18,6 +20,7 @@ struct Options {
   std::optional<double> level;
   BracketOptions bracket;
   ScatterChoice scatter;
+  std::filesystem::path scale;
   std::string out;
   bool json = false;
 };
@@ -44,8 +47,12 @@ void PrintBracket(const v1::ReduceResult& result) {
 
 absl::Status Run(const Options& options) {
   EYEBOX_ASSIGN_OR_RETURN(const v1::ReduceResult result,
-                          ReduceSeries({options.recording, options.series, options.sensor,
-                                        options.scatter, options.bracket},
+                          ReduceSeries({.recording = options.recording,
+                                        .series = options.series,
+                                        .sensor = options.sensor,
+                                        .scatter = options.scatter,
+                                        .bracket = options.bracket,
+                                        .scale = options.scale},
                                        options.level, options.out, TerminalWatcher()));
   PrintWarnings(result.warnings());
   if (options.json) return PrintJson(result);
@@ -73,6 +80,7 @@ void AddReduce(CLI::App& app, Work& work) {
         command.add_flag("--repair", options.bracket.repair_defects,
                          "Fill defective pixels from neighbours for display; they stay masked");
         AddScatterChoice(command, options.scatter);
+        AddScale(command, options.scale);
         command.add_option("--out", options.out, "Write luminance, sigma and mask there as NPY");
         command.add_flag("--json", options.json, "Print the result as JSON on stdout");
       },

@@ -3,6 +3,7 @@
 
 #include "capture/base/status.h"
 #include "service/cli/command.h"
+#include "service/cli/known_options.h"
 #include "service/cli/rig_source.h"
 #include "service/cli/run_output.h"
 #include "service/cli/scatter_options.h"
@@ -46,6 +47,8 @@ void AddRun(CLI::App& app, Work& work) {
                         "or sim:NAME")
             ->required();
         AddScatterChoice(command, options.output.run.scatter);
+        AddScale(command, options.output.run.scale);
+        AddGeometryChoice(command, options.output.run.geometry);
         options.output.AddTo(command, "SOURCE/results/run; of a rig: out/NAME");
         command.add_option("--recording", options.recording,
                            "Where a rig's frames go; must not exist (default: OUT/recording)");

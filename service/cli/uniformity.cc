@@ -1,9 +1,11 @@
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 #include <string>
 
 #include "capture/base/status.h"
 #include "service/cli/command.h"
+#include "service/cli/known_options.h"
 #include "service/cli/scatter_options.h"
 #include "service/cli/terminal.h"
 #include "service/single_steps.h"
@@ -16,6 +18,7 @@ struct Options {
   std::optional<std::string> series;
   std::string sensor;
   ScatterChoice scatter;
+  std::filesystem::path geometry;
   std::string out;
   bool json = false;
 };
@@ -42,10 +45,13 @@ void PrintDetail(const v1::UniformityDetail& detail) {
 }
 
 absl::Status Run(const Options& options) {
-  EYEBOX_ASSIGN_OR_RETURN(
-      const v1::UniformityResult result,
-      MapUniformity({options.recording, options.series, options.sensor, options.scatter},
-                    options.out, TerminalWatcher()));
+  EYEBOX_ASSIGN_OR_RETURN(const v1::UniformityResult result,
+                          MapUniformity({.recording = options.recording,
+                                         .series = options.series,
+                                         .sensor = options.sensor,
+                                         .scatter = options.scatter,
+                                         .geometry = options.geometry},
+                                        options.out, TerminalWatcher()));
   PrintWarnings(result.warnings());
   if (options.json) return PrintJson(result);
   PrintParameters(result.parameters());
@@ -68,6 +74,7 @@ void AddUniformity(CLI::App& app, Work& work) {
         command.add_option("--series", options.series, "Series (default: the main or only one)");
         command.add_option("--sensor", options.sensor, kSensorHelp);
         AddScatterChoice(command, options.scatter);
+        AddGeometryChoice(command, options.geometry);
         command.add_option("--out", options.out, "Write raw and smooth g with sigma there as NPY");
         command.add_flag("--json", options.json, "Print the result as JSON on stdout");
       },

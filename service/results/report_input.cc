@@ -114,6 +114,27 @@ std::string NameOf(const optics::SmoothField& smooth) {
              : absl::StrFormat("polynomial of order %d", smooth.order);
 }
 
+// The same of a calibrated camera, along the middle row and the middle column; empty where a pixel
+// has no field angle.
+void GiveAngles(const optics::ViewGeometry& geometry, report::MapFigure& figure) {
+  const double middle_x = (figure.size.width_px - 1) / 2.0;
+  const double middle_y = (figure.size.height_px - 1) / 2.0;
+  std::vector<double> columns;
+  std::vector<double> rows;
+  for (int x = 0; x < figure.size.width_px; ++x) {
+    const auto angle = geometry.FieldAngleOf({1.0 * x, middle_y});
+    if (!angle) return;
+    columns.push_back(angle->horizontal_deg);
+  }
+  for (int y = 0; y < figure.size.height_px; ++y) {
+    const auto angle = geometry.FieldAngleOf({middle_x, 1.0 * y});
+    if (!angle) return;
+    rows.push_back(angle->vertical_deg);
+  }
+  figure.column_deg = std::move(columns);
+  figure.row_deg = std::move(rows);
+}
+
 report::MapFigure MapOf(const RunFindings& findings) {
   const optics::UniformityMap& map = findings.map;
   report::MapFigure figure;
@@ -132,7 +153,9 @@ report::MapFigure MapOf(const RunFindings& findings) {
   }
   figure.contours = ContourLevels(map.smooth_range);
   figure.contoured = findings.smooth_g.pixels();
-  if (const auto& geometry = findings.header.geometry) {
+  if (findings.geometry) {
+    GiveAngles(*findings.geometry, figure);
+  } else if (const auto& geometry = findings.header.geometry) {
     figure.column_deg =
         AnglesDeg(figure.size.width_px, geometry->principal_x_px, geometry->focal_length_px, 1);
     figure.row_deg =

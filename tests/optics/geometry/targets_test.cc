@@ -7,6 +7,7 @@
 #include "optics/geometry/calibrate_lens.h"
 #include "optics/geometry/find_charuco.h"
 #include "optics/geometry/find_dots.h"
+#include "tests/optics/geometry/photograph.h"
 #include "tests/optics/geometry/views.h"
 
 namespace eyebox::optics {
@@ -14,59 +15,11 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
-
-// What the lens sees of a plane: for each of 2 x 2 places in a pixel the point of the target that
-// the ray meets, where `brightness` says what is printed; light falls off towards the edge.
-template <typename Brightness>
-Image<double> Photograph(const CameraModel& lens, const Pose& pose, unsigned seed, double noise_dn,
-                         Brightness brightness) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> noise(0, noise_dn);
-  Image<double> view(lens.size);
-  const Rotation back = Transposed(pose.rotation_camera_target);
-  const Direction normal = Rotate(pose.rotation_camera_target, {0, 0, 1});
-  const Direction& t = pose.translation_mm;
-  for (int y = 0; y < lens.size.height_px; ++y) {
-    for (int x = 0; x < lens.size.width_px; ++x) {
-      double sum = 0;
-      for (int part = 0; part < 4; ++part) {
-        const auto ray = lens.DirectionOf({x + part % 2 * 0.5 - 0.25, y + part / 2 * 0.5 - 0.25});
-        if (!ray) continue;
-        const double along = (*ray)[0] * normal[0] + (*ray)[1] * normal[1] + (*ray)[2] * normal[2];
-        const double away = t[0] * normal[0] + t[1] * normal[1] + t[2] * normal[2];
-        const double length = away / along;
-        if (!(length > 0)) continue;
-        const Direction place = Rotate(back, {length * (*ray)[0] - t[0], length * (*ray)[1] - t[1],
-                                              length * (*ray)[2] - t[2]});
-        sum += (*ray)[2] * brightness(place[0], place[1]) / 4;
-      }
-      view.at(x, y) = std::max(0.0, 200 + 2000 * sum + noise(random));
-    }
-  }
-  return view;
-}
-
-Pose At(double right, double up, double forward, double turn_x_deg, double turn_y_deg,
-        double turn_z_deg) {
-  return Moved({.translation_mm = {right, up, forward}},
-               {turn_x_deg * kDegree, turn_y_deg * kDegree, turn_z_deg * kDegree}, {0, 0, 0});
-}
-
-std::vector<Pose> Poses(double distance_mm) {
-  return {At(0, 0, distance_mm, 0, 0, 0),    At(2, 1, distance_mm, 25, 0, 3),
-          At(-2, 0, distance_mm, -25, 5, 0), At(0, -2, distance_mm, 0, 25, -5),
-          At(1, 2, distance_mm, 4, -25, 0),  At(-1, 1, distance_mm, 18, 18, 8)};
-}
-
 constexpr DotGrid kDots = {.columns = 11, .rows = 9, .bright = true};
 constexpr double kPitchMm = 8;
 
 double DotsAt(double x_mm, double y_mm) {
-  const double column = std::round(x_mm / kPitchMm);
-  const double row = std::round(y_mm / kPitchMm);
-  if (std::abs(column) > (kDots.columns - 1) / 2 || std::abs(row) > (kDots.rows - 1) / 2) return 0;
-  return std::hypot(x_mm - column * kPitchMm, y_mm - row * kPitchMm) < 1.5 ? 1 : 0;
+  return GridOfDots(kDots.columns, kDots.rows, kPitchMm, 1.5, x_mm, y_mm);
 }
 
 CameraModel SmallWideLens() {

@@ -10,7 +10,7 @@ find_program(EYEBOX_CCACHE ccache)
 if(EYEBOX_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   # The sloppiness is what ccache asks for before it caches what uses a precompiled header.
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
-      CCACHE_SLOPPINESS=pch_defines,time_macros ${EYEBOX_CCACHE})
+      CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${EYEBOX_CCACHE})
 endif()
 
 add_library(eyebox_options INTERFACE)

@@ -45,6 +45,8 @@ void AddGeometry(CLI::App& app, Work& work);
 void AddPhotometry(CLI::App& app, Work& work);
 void AddFit(CLI::App& app, Work& work);
 void AddCube(CLI::App& app, Work& work);
+void AddPredict(CLI::App& app, Work& work);
+void AddKnots(CLI::App& app, Work& work);
 void AddPreflight(CLI::App& app, Work& work);
 void AddRun(CLI::App& app, Work& work);
 void AddReplay(CLI::App& app, Work& work);

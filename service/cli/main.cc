@@ -30,6 +30,8 @@ void AddAllCommands(CLI::App& app, Work& work) {
   AddPhotometry(app, work);
   AddFit(app, work);
   AddCube(app, work);
+  AddPredict(app, work);
+  AddKnots(app, work);
   AddVerifyFiles(app, work);
   AddRecover(app, work);
   AddPack(app, work);

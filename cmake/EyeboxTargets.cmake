@@ -43,6 +43,7 @@ target_link_libraries(eyebox_pch PRIVATE eyebox_options)
 target_precompile_headers(eyebox_pch PRIVATE ${eyebox_common_headers})
 add_library(eyebox_test_pch OBJECT EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/empty.cc)
 target_link_libraries(eyebox_test_pch PRIVATE eyebox_options)
+target_compile_definitions(eyebox_test_pch PRIVATE GTEST_HAS_PTHREAD=1)  # as GTest::gtest has it
 target_precompile_headers(eyebox_test_pch PRIVATE ${eyebox_common_headers}
                           <gmock/gmock.h> <gtest/gtest.h>)
 

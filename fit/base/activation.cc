@@ -55,14 +55,11 @@ double Activation::Slope(double drive) const {
 
 double Activation::InverseSlope(double activation) const {
   if (activation < 0 || activation > 1) return 0;
-  double slope = 0;
-  if (activation == 0 || activation == 1) {
-    slope = SlopeByBase(*this, {activation, 1 - activation});
-  } else {
-    const double y = PowerOf(*this).Inverse(activation);
-    slope = PowerOf(*this).Slope({y, 1 - y}) * warp.SlopeAt(warp.InverseAt(y));
-  }
-  const double inverse = (1 - cutoff_drive) / slope;
+  const ToePower power = PowerOf(*this);
+  const bool at_an_end = activation == 0 || activation == 1;
+  const double y = at_an_end ? activation : power.Inverse(activation);
+  const double inverse =
+      (1 - cutoff_drive) * power.InverseSlope(activation) / warp.SlopeAt(warp.InverseAt(y));
   return std::isfinite(inverse) ? inverse : 0;
 }
 

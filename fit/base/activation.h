@@ -23,18 +23,18 @@ struct Activation {
   double toe_drive = 0;  // b, in units of x: sRGB has 0.0393 with gamma 2.4
   MonotoneWarp warp{};   // W
 
-  // Relative error below 1e-14 (gamma up to 8), with a warp 1e-13. NaN only for a drive that is
-  // NaN.
+  // Relative error below 1e-14 (gamma up to 8), with a warp 1e-13, where v - v0 is above 1e-300 and
+  // the result is a normal double. NaN only for a drive that is NaN.
   double H(double drive) const;
   // The drive value at which H is `activation`, in [v0, 1]: v0 for activation <= 0 (the largest
   // drive that still shows L0, so that the inverse is continuous), 1 for activation >= 1. Relative
-  // error below 1e-12.
+  // error below 1e-12, with a warp that of an activation which is off by 1e-12 of itself.
   double InverseH(double activation) const;
   // dh/dv: 0 below v0 and above 1. At v0 and at 1 the derivative from within, or 0 at v0 where that
   // is infinite (gamma < 1 without a toe). Relative error below 1e-12.
   double Slope(double drive) const;
   // dv/dh: 0 below 0 and above 1. At 0 and at 1 the derivative from within, or 0 at 0 where that is
-  // infinite (gamma > 1 without a toe). Relative error below 1e-12.
+  // infinite (gamma > 1 without a toe). Errors as of InverseH.
   double InverseSlope(double activation) const;
   double Luminance(double drive) const { return minimum_luminance + luminance_range * H(drive); }
   // dL/d(L0, L1, v0, gamma) at `drive`, each to 1e-12 relative. At and below v0 it is (1, 0, 0, 0):

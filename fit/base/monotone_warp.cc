@@ -53,10 +53,15 @@ MonotoneWarp MonotoneWarp::FromLogSlopes(std::span<const double> x,
     const Knot& before = warp.knots_[i - 1];
     warp.knots_[i].y = before.y + Rise(before, warp.knots_[i], x[i] - before.x);
   }
+  for (size_t i = warp.knots_.size() - 1; i-- > 0;) {
+    const Knot& after = warp.knots_[i + 1];
+    warp.knots_[i].rest = after.rest + Rise(warp.knots_[i], after, after.x - warp.knots_[i].x);
+  }
   const double total = warp.knots_.back().y;
   for (Knot& knot : warp.knots_) {
     knot.y /= total;
     knot.slope /= total;
+    knot.rest /= total;
   }
   return warp;
 }
@@ -77,10 +82,12 @@ double MonotoneWarp::At(double x) const {
 double MonotoneWarp::OneMinusAt(double one_minus_x) const {
   const double u = std::clamp(one_minus_x, 0.0, 1.0);
   if (IsIdentity()) return u;
-  const Knot& from = knots_[knots_.size() - 2];
-  const Knot& white = knots_.back();
-  if (u > white.x - from.x) return 1 - At(1 - u);
-  return u * (white.slope + (from.slope - white.slope) * u / (2 * (white.x - from.x)));
+  // Counted from white, piece by piece: a sum of positive areas loses no digits.
+  const size_t piece = PieceOf(1 - u);
+  const Knot& from = knots_[piece];
+  const Knot& to = knots_[piece + 1];
+  const double below = std::max((to.x - 1) + u, 0.0);
+  return to.rest + below * (to.slope + (from.slope - to.slope) * below / (2 * (to.x - from.x)));
 }
 
 double MonotoneWarp::SlopeAt(double x) const {

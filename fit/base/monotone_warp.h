@@ -16,6 +16,7 @@ class MonotoneWarp {
     double x = 0;
     double y = 0;      // W(x)
     double slope = 0;  // W'(x) > 0
+    double rest = 0;   // 1 - W(x), summed from white, so that it has as many digits as y
     bool operator==(const Knot&) const = default;
   };
 
@@ -30,10 +31,10 @@ class MonotoneWarp {
   bool IsIdentity() const { return knots_.empty(); }
   const std::vector<Knot>& Knots() const { return knots_; }
 
-  // All of them clamp to [0, 1]. Relative errors below 1e-15 times the number of knots, except that
-  // of OneMinusAt below white's last knot, which is absolute.
+  // All of them clamp to [0, 1]. Relative errors below 1e-15 times the number of knots; of
+  // InverseAt, those of a y that is off by as much.
   double At(double x) const;
-  double OneMinusAt(double one_minus_x) const;  // 1 - W, exact near white
+  double OneMinusAt(double one_minus_x) const;  // 1 - W
   double SlopeAt(double x) const;               // W'
   double InverseAt(double y) const;
   // dW/d(log slope) at x of each knot, [knots].

@@ -19,6 +19,11 @@ double ToePower::Inverse(double p) const {
   return (1 + shift_) * std::pow(p, 1 / gamma_) - shift_;
 }
 
+double ToePower::InverseSlope(double p) const {
+  if (p < toe_slope_ * toe_) return 1 / toe_slope_;
+  return (1 + shift_) / gamma_ * std::pow(p, 1 / gamma_ - 1);
+}
+
 double ToePower::Slope(Place place) const {
   if (InToe(place)) return toe_slope_;
   return gamma_ * std::pow((place.y + shift_) / (1 + shift_), gamma_ - 1) / (1 + shift_);

@@ -20,6 +20,9 @@ class ToePower {
 
   double At(Place place) const;
   double Inverse(double p) const;  // 0 < p < 1
+  // d(Inverse)/dp for 0 <= p <= 1, from p itself: y may be too small for a double where this is
+  // not. Infinite at 0 for gamma > 1 without a toe.
+  double InverseSlope(double p) const;
   // dP/dy; infinite at 0 for gamma < 1 without a toe.
   double Slope(Place place) const;
   double ByGamma(Place place) const;  // 0 at y = 0

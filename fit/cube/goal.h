@@ -1,5 +1,6 @@
 // What a table is to achieve: luminance proportional to the rendered value (HDRP model, eq 15).
 // Here x = u / r is the rendered value as a fraction of white, r the value that white stands for.
+// Relative errors below 1e-15 of a luminance and 1e-12 of a drive value without a warp.
 #ifndef EYEBOX_FIT_CUBE_GOAL_H_
 #define EYEBOX_FIT_CUBE_GOAL_H_
 

@@ -8,19 +8,27 @@ namespace {
 
 constexpr double kDegPerRad = 180 / std::numbers::pi;
 
+// Near 90 deg the conversion to radians would lose the distance to it, which degrees hold exactly.
+double TanDeg(double angle_deg) {
+  const double size = std::abs(angle_deg);
+  const double tangent =
+      size <= 45 ? std::tan(size / kDegPerRad) : 1 / std::tan((90 - size) / kDegPerRad);
+  return std::copysign(tangent, angle_deg);
+}
+
 // Solid angle between the axis and the corner (h, v) of a rectangle: atan(x y / sqrt(1 + x^2 +
 // y^2)) with x = tan h and y = tan v.
 double QuadrantSr(double horizontal_deg, double vertical_deg) {
-  const double x = std::tan(horizontal_deg / kDegPerRad);
-  const double y = std::tan(vertical_deg / kDegPerRad);
+  const double x = TanDeg(horizontal_deg);
+  const double y = TanDeg(vertical_deg);
   return std::atan(x * y / std::hypot(1, x, y));
 }
 
 }  // namespace
 
 Direction DirectionOf(const FieldAngle& angle) {
-  const double x = std::tan(angle.horizontal_deg / kDegPerRad);
-  const double y = std::tan(angle.vertical_deg / kDegPerRad);
+  const double x = TanDeg(angle.horizontal_deg);
+  const double y = TanDeg(angle.vertical_deg);
   const double length = std::hypot(x, y, 1);
   return {x / length, y / length, 1 / length};
 }

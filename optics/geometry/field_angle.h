@@ -21,12 +21,12 @@ struct FieldAngle {
   double vertical_deg = 0;    // up positive
 };
 
-// Of length 1. Both angles lie within (-90, 90) deg.
+// Of length 1, each component to 1e-15 of it. Both angles lie within (-90, 90) deg.
 Direction DirectionOf(const FieldAngle& angle);
-// Nothing for what does not point forward.
+// To 1e-15 relative. Nothing for what does not point forward.
 std::optional<FieldAngle> FieldAngleOf(const Direction& direction);
 
-// Angle between `direction` and straight ahead, deg; exact to the last digits near 0 too.
+// Angle between `direction` and straight ahead, deg, to 1e-15 relative, near 0 too.
 double AngleOffAxisDeg(const Direction& direction);
 
 Direction Rotate(const Rotation& rotation, const Direction& direction);
@@ -34,7 +34,8 @@ Direction Rotate(const Rotation& rotation, const Direction& direction);
 Rotation Transposed(const Rotation& rotation);
 
 // Solid angle of the region {left <= horizontal <= right, lower <= vertical <= upper}, sr: closed
-// form of a rectangle on a plane seen from a point.
+// form of a rectangle on a plane seen from a point. To 1e-14 sr, so few digits are left of a region
+// as small as a pixel: see PixelSolidAnglesSr() for those.
 double SolidAngleSr(const FieldAngle& lower_left, const FieldAngle& upper_right);
 
 }  // namespace eyebox::optics

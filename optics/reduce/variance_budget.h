@@ -28,7 +28,7 @@ class VarianceBudgetMeter {
   void Add(const Exposure& exposure, const MeasuredImage& rate,
            const Image<float>& expected_rate_dn_s, size_t first = 0);
 
-  // All zero if no sampled pixel is valid.
+  // Each share to 1e-14. All zero if no sampled pixel is valid.
   VarianceBudget Mean() const;
 
  private:

@@ -20,8 +20,9 @@ using SharedTable = std::shared_ptr<const ColourTable>;
 ColourTable SeparableTable(const std::vector<double>& values);
 
 // Trilinear at `position`, per axis in entries: entry i lies at i. Positions outside [0, n - 1]
-// are clamped. `weight_bits` 0 interpolates exactly, else weights are rounded to 2^-weight_bits,
-// as graphics hardware does with 8. A position that is NaN gives NaN.
+// are clamped. `weight_bits` 0 interpolates exactly (to 1e-15 of the largest entry), else weights
+// are rounded to 2^-weight_bits, as graphics hardware does with 8. A position that is NaN gives
+// NaN.
 Rgb SampleTrilinear(const ColourTable& table, const Rgb& position, int weight_bits = 0);
 
 }  // namespace eyebox::optics

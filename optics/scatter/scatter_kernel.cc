@@ -13,9 +13,10 @@ namespace {
 constexpr double kExponentMin = 0.1;
 constexpr double kExponentMax = 40;
 
-// Integral of u^(k - 1) over u from 1 to q, given log q; the logarithm at k = 0.
+// Integral of u^(k - 1) over u from 1 to q, given log q; the logarithm at k = 0. expm1 keeps all
+// digits however small its argument, until products leave the range of doubles.
 double PowerIntegral(double k, double log_q) {
-  return std::abs(k * log_q) < 1e-9 ? log_q : std::expm1(k * log_q) / k;
+  return std::abs(k) < 1e-18 ? log_q : std::expm1(k * log_q) / k;
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ struct Directions {
 };
 
 // Three unit vectors. Where l = -v, h does not exist; it is taken as n, the limit for light and eye
-// that sink to the surface together.
+// that sink to the surface together. n_h to 1e-15, h_sin2 to 1e-15 of its root.
 Directions DirectionsBetween(const Vec3& normal, const Vec3& light, const Vec3& view);
 
 }  // namespace eyebox::optics

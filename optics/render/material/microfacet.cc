@@ -10,6 +10,17 @@ namespace {
 constexpr double kShaderDenominator = 1e-5;
 constexpr double kLeastHalfCosine = 1e-100;
 
+// a^2 + b^2 - 1 for a, b >= 0, also where it nearly vanishes: the squares with what their rounding
+// leaves, the larger one less 1 first, which is exact where that matters.
+double SquareSumMinusOne(double a, double b) {
+  const double larger = std::max(a, b);
+  const double smaller = std::min(a, b);
+  const double larger2 = larger * larger;
+  const double smaller2 = smaller * smaller;
+  const double left = std::fma(larger, larger, -larger2) + std::fma(smaller, smaller, -smaller2);
+  return (larger2 - 1) + smaller2 + left;
+}
+
 }  // namespace
 
 double GgxDistribution(const Directions& d, double roughness) {
@@ -50,12 +61,15 @@ double CavityVisibility(const Directions& d) {
 }
 
 double FresnelExact(double u, double index) {
-  const double b2 = index * index + u * u - 1;
   if (index == 1) return 0;
+  const double contrast = (index - 1) * (index + 1);
+  const double b2 = SquareSumMinusOne(index, u);
   if (b2 <= 0) return 1;
   const double b = std::sqrt(b2);
-  const double s = (b - u) / (b + u);
-  const double p = (u * (b + u) - 1) / (u * (b - u) + 1);
+  // b - u, which would cancel for an index near 1.
+  const double difference = contrast / (b + u);
+  const double s = difference / (b + u);
+  const double p = (u * (b + u) - 1) / (u * difference + 1);
   return 0.5 * s * s * (1 + p * p);
 }
 

@@ -1,7 +1,9 @@
 // The factors of a microfacet highlight: how many facets face h (D), how many of them are seen and
 // lit (G, here as the visibility V = G / (4 n.l n.v)), how much each reflects (F).
 //
-// Roughness is alpha, of the slopes (not Unity's perceptual roughness), and above 0.
+// Roughness is alpha, of the slopes (not Unity's perceptual roughness), and above 0. Relative
+// errors below 1e-15 for the numbers in Directions as they stand, unless a comment says another
+// figure.
 #ifndef EYEBOX_OPTICS_RENDER_MATERIAL_MICROFACET_H_
 #define EYEBOX_OPTICS_RENDER_MATERIAL_MICROFACET_H_
 
@@ -14,6 +16,7 @@ namespace eyebox::optics {
 double GgxDistribution(const Directions& d, double roughness);
 
 // D of Beckmann (Kyselka section 2.4.1) over pi, 1/sr: its integral over n.h is 1. 0 at n.h = 0.
+// Relative error below 1e-12 where D is above 1e-290.
 double BeckmannDistribution(const Directions& d, double roughness);
 
 // V n.l of Smith's height-correlated masking and shadowing (Kyselka section 3.2.2; Heitz 2014, eq
@@ -30,7 +33,8 @@ double SmithVisibilityApproximate(double n_l, double n_v, double roughness);
 double CavityVisibility(const Directions& d);
 
 // F of unpolarised light at a dielectric of relative refractive index `index` > 0, at the cosine
-// `u` of incidence (Kyselka section 2.4.1). 1 beyond the critical angle.
+// `u` of incidence (Kyselka section 2.4.1). 1 beyond the critical angle. Relative error below
+// 1e-14.
 double FresnelExact(double u, double index);
 
 // Schlick's approximation, f0 + (1 - f0) (1 - u)^5 (Kyselka section 2.4.1).

@@ -194,7 +194,13 @@ absl::StatusOr<v1::CubeResult> DesignCube(const CubeRequest& request) {
       fit::DesignTable(activation, request.target, request.size, request.design));
   EYEBOX_ASSIGN_OR_RETURN(const std::string bytes, fit::EncodeTable(table));
   EYEBOX_RETURN_IF_ERROR(WriteFileAtomically(request.out, bytes));
-  return DescribeCube(table, request.fit, request.out.filename().string(), bytes);
+  v1::CubeResult result = DescribeCube(table, request.fit, request.out.filename().string(), bytes);
+  for (const fit::StorageModel& storage : fit::ModelsOf(request.storage)) {
+    EYEBOX_ASSIGN_OR_RETURN(const fit::StoredCertificate stored,
+                            fit::CertifyStored(table, activation, request.design, storage));
+    AddStored(stored, result);
+  }
+  return result;
 }
 
 }  // namespace eyebox::service

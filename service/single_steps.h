@@ -64,6 +64,8 @@ struct CubeRequest {
   int size = 32;
   std::filesystem::path out;
   fit::DesignOptions design;
+  // Certified after each of its models by itself and after all of them together.
+  fit::StorageModel storage;
 };
 // Designs, certifies and writes `out`. Errors: NotFound, InvalidArgument, the errno of the disk.
 absl::StatusOr<v1::CubeResult> DesignCube(const CubeRequest& request);

@@ -50,6 +50,7 @@ void AddKnots(CLI::App& app, Work& work);
 void AddPreflight(CLI::App& app, Work& work);
 void AddRun(CLI::App& app, Work& work);
 void AddReplay(CLI::App& app, Work& work);
+void AddVerify(CLI::App& app, Work& work);
 void AddVerifyFiles(CLI::App& app, Work& work);
 void AddRecover(CLI::App& app, Work& work);
 void AddPack(CLI::App& app, Work& work);

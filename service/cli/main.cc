@@ -32,6 +32,7 @@ void AddAllCommands(CLI::App& app, Work& work) {
   AddCube(app, work);
   AddPredict(app, work);
   AddKnots(app, work);
+  AddVerify(app, work);
   AddVerifyFiles(app, work);
   AddRecover(app, work);
   AddPack(app, work);

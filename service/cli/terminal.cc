@@ -48,6 +48,12 @@ void PrintCertificate(const v1::CubeResult& cube) {
               (cube.target() + " " + std::to_string(cube.size())).c_str(),
               100 * certificate.max_relative(), certificate.at_u(),
               100 * certificate.rms_relative(), certificate.u_from(), certificate.u_to());
+  for (const v1::StorageCertificate& stored : cube.storage_certificates()) {
+    std::printf("  after %-28s worst %.3f %% (%s, at u = %.4f), rms %.3f %%, 8-bit step %.2f %%\n",
+                stored.storage().c_str(), 100 * stored.certificate().max_relative(),
+                stored.worst_channel().c_str(), stored.certificate().at_u(),
+                100 * stored.certificate().rms_relative(), 100 * stored.contrast_step_8bit());
+  }
 }
 
 void PrintWarnings(const google::protobuf::RepeatedPtrField<std::string>& warnings) {

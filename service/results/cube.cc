@@ -27,7 +27,24 @@ void AddWarnings(const fit::TableDesign& design, v1::CubeResult& result) {
   }
 }
 
+void Describe(const fit::Certificate& certificate, v1::Certificate& message) {
+  message.set_max_relative(certificate.max_relative);
+  message.set_rms_relative(certificate.rms_relative);
+  message.set_at_u(certificate.at_u);
+  message.set_u_from(certificate.u_from);
+  message.set_u_to(certificate.u_to);
+  message.set_samples(certificate.samples);
+}
+
 }  // namespace
+
+void AddStored(const fit::StoredCertificate& stored, v1::CubeResult& result) {
+  v1::StorageCertificate& message = *result.add_storage_certificates();
+  message.set_storage(fit::NameOf(stored.storage));
+  Describe(stored.certificate, *message.mutable_certificate());
+  message.set_worst_channel(std::string(fit::NameOf(stored.worst_channel)));
+  message.set_contrast_step_8bit(stored.certificate.contrast_step_8bit);
+}
 
 v1::CubeResult DescribeCube(const fit::TableDesign& design, const v1::ActivationResult& activation,
                             std::string_view file, std::string_view bytes) {
@@ -40,13 +57,10 @@ v1::CubeResult DescribeCube(const fit::TableDesign& design, const v1::Activation
   AddParameter(parameters, "u_cutoff", design.u_cutoff, 0, "1");
   result.set_target(std::string(fit::NameOf(design.target)));
   result.set_size(design.size);
-  v1::Certificate& certificate = *result.mutable_certificate();
-  certificate.set_max_relative(design.certificate.max_relative);
-  certificate.set_rms_relative(design.certificate.rms_relative);
-  certificate.set_at_u(design.certificate.at_u);
-  certificate.set_u_from(design.certificate.u_from);
-  certificate.set_u_to(design.certificate.u_to);
-  certificate.set_samples(design.certificate.samples);
+  result.set_method(std::string(fit::NameOf(design.method)));
+  if (!design.designed_for.IsExact()) result.set_designed_for(fit::NameOf(design.designed_for));
+  result.set_contrast_step_8bit(design.certificate.contrast_step_8bit);
+  Describe(design.certificate, *result.mutable_certificate());
   result.set_file(std::string(file));
   result.set_sha256(Sha256(bytes));
   result.mutable_knots_u()->Add(design.knots_u.begin(), design.knots_u.end());

@@ -13,6 +13,9 @@ namespace eyebox::service {
 v1::CubeResult DescribeCube(const fit::TableDesign& design, const v1::ActivationResult& activation,
                             std::string_view file, std::string_view bytes);
 
+// Adds what the table leaves after a storage model.
+void AddStored(const fit::StoredCertificate& stored, v1::CubeResult& result);
+
 }  // namespace eyebox::service
 
 #endif  // EYEBOX_SERVICE_RESULTS_CUBE_H_

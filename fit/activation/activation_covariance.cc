@@ -69,17 +69,23 @@ absl::StatusOr<Eigen::MatrixXd> SplineResponse(const ActivationProblem& problem,
   return response;
 }
 
+// [free parameters, readings], of the weighted readings.
+absl::StatusOr<Eigen::MatrixXd> FreeResponse(const ActivationProblem& problem,
+                                             const ActivationSolution& solution,
+                                             const std::vector<int>& free) {
+  if (problem.model == ActivationModel::kMonotoneSpline) {
+    return SplineResponse(problem, solution, free);
+  }
+  return PseudoInverse(WeightedJacobian(problem, problem.model, solution.activation, free),
+                       problem.model);
+}
+
 }  // namespace
 
 absl::StatusOr<std::vector<double>> ActivationCovariance(const ActivationProblem& problem,
                                                          const ActivationSolution& solution) {
   const std::vector<int> free = FreeParameters(problem.model, solution.activation);
-  EYEBOX_ASSIGN_OR_RETURN(
-      const Eigen::MatrixXd response,
-      problem.model == ActivationModel::kMonotoneSpline
-          ? SplineResponse(problem, solution, free)
-          : PseudoInverse(WeightedJacobian(problem, problem.model, solution.activation, free),
-                          problem.model));
+  EYEBOX_ASSIGN_OR_RETURN(const Eigen::MatrixXd response, FreeResponse(problem, solution, free));
   const Eigen::MatrixXd among_free = response * response.transpose();
   const size_t count = static_cast<size_t>(free.back()) + 1;
   std::vector<double> covariance(count * count, 0.0);
@@ -89,6 +95,21 @@ absl::StatusOr<std::vector<double>> ActivationCovariance(const ActivationProblem
     }
   }
   return covariance;
+}
+
+absl::StatusOr<std::vector<double>> ActivationResponse(const ActivationProblem& problem,
+                                                       const ActivationSolution& solution) {
+  const std::vector<int> free = FreeParameters(problem.model, solution.activation);
+  EYEBOX_ASSIGN_OR_RETURN(const Eigen::MatrixXd weighted, FreeResponse(problem, solution, free));
+  const size_t readings = problem.readings.size();
+  std::vector<double> response((static_cast<size_t>(free.back()) + 1) * readings, 0.0);
+  for (Eigen::Index i = 0; i < weighted.rows(); ++i) {
+    for (size_t j = 0; j < readings; ++j) {
+      response[readings * free[i] + j] =
+          problem.readings[j].root_weight * weighted(i, static_cast<Eigen::Index>(j));
+    }
+  }
+  return response;
 }
 
 }  // namespace eyebox::fit

@@ -39,6 +39,9 @@ struct ActivationSolution {
   std::string termination;  // why the solver stopped and which parameter ended at a bound
 };
 
+// The problem that `fit` solved: its readings under its weights.
+ActivationProblem ProblemOf(const ActivationFit& fit);
+
 // dL/d(parameter) at `drive`, in the order of ActivationFit::parameters; 0 for those that the model
 // holds.
 std::vector<double> ParameterGradient(ActivationModel model, const Activation& activation,
@@ -79,6 +82,11 @@ absl::StatusOr<ActivationSolution> SolveModel(const ActivationProblem& problem,
 // FailedPrecondition (the readings do not determine the parameters).
 absl::StatusOr<std::vector<double>> ActivationCovariance(const ActivationProblem& problem,
                                                          const ActivationSolution& solution);
+
+// d(parameter) / d(luminance of a reading) where the fit stands, [parameters, readings] row-major,
+// zeros for a parameter that is held. Errors: those of ActivationCovariance.
+absl::StatusOr<std::vector<double>> ActivationResponse(const ActivationProblem& problem,
+                                                       const ActivationSolution& solution);
 
 // Rms over the interior drives of (predicted - measured) / max(measured, floor), each predicted
 // from a fit without any reading at that drive. Errors: those of SolveModel.

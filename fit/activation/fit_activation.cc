@@ -37,15 +37,21 @@ absl::Status CheckSigmas(const LevelSeries& series) {
   return absl::OkStatus();
 }
 
-absl::StatusOr<ActivationProblem> Pose(const LevelSeries& series, ActivationModel model,
-                                       Weighting weighting) {
-  EYEBOX_RETURN_IF_ERROR(series.Validate());
-  if (weighting == Weighting::kMeasuredSigma) EYEBOX_RETURN_IF_ERROR(CheckSigmas(series));
+ActivationProblem WeightedProblem(const LevelSeries& series, ActivationModel model,
+                                  Weighting weighting) {
   ActivationProblem problem{model, {}};
   for (const LevelReading& reading : series.readings) {
     problem.readings.push_back(
         {reading.drive, reading.luminance, RootWeight(reading, weighting, RelativeFloor(series))});
   }
+  return problem;
+}
+
+absl::StatusOr<ActivationProblem> Pose(const LevelSeries& series, ActivationModel model,
+                                       Weighting weighting) {
+  EYEBOX_RETURN_IF_ERROR(series.Validate());
+  if (weighting == Weighting::kMeasuredSigma) EYEBOX_RETURN_IF_ERROR(CheckSigmas(series));
+  const ActivationProblem problem = WeightedProblem(series, model, weighting);
   const size_t drives = problem.Drives().size();
   if (drives < problem.FewestDrives()) {
     return Rejected(series.source,
@@ -164,6 +170,7 @@ absl::StatusOr<ActivationFit> FitActivation(const LevelSeries& series, Activatio
   const auto free = static_cast<int>(FreeParameters(model, fit.activation).size());
   fit.degrees_of_freedom = static_cast<int>(series.readings.size()) - free;
   EYEBOX_ASSIGN_OR_RETURN(fit.covariance, ActivationCovariance(problem, solution));
+  EYEBOX_ASSIGN_OR_RETURN(fit.response, ActivationResponse(problem, solution));
   ListParameters(series, fit);
   ScaleCovariance(series, fit);
   SetSigmas(fit);
@@ -172,6 +179,12 @@ absl::StatusOr<ActivationFit> FitActivation(const LevelSeries& series, Activatio
   EYEBOX_ASSIGN_OR_RETURN(fit.leave_one_out_rms_relative,
                           LeaveOneOutError(problem, solution.gamma_fit, floor));
   return fit;
+}
+
+ActivationProblem ProblemOf(const ActivationFit& fit) {
+  LevelSeries series;
+  for (const FittedLevel& level : fit.levels) series.readings.push_back(level.reading);
+  return WeightedProblem(series, fit.model, fit.weighting);
 }
 
 double LuminanceSigma(const ActivationFit& fit, double drive) {

@@ -51,6 +51,9 @@ struct ActivationFit {
   // uncertainty is added to L0 and L1. A parameter that ended at its bound (L0 = 0, v0 = 0; the
   // termination says so) keeps the sigma it would have if the bound were not there.
   std::vector<double> covariance;
+  // [parameters, readings] row-major: how each follows the luminance of each reading, to first
+  // order; zeros for a parameter that was held.
+  std::vector<double> response;
   std::vector<FittedLevel> levels;
   double rms_relative = 0;  // over all readings, of (fitted - measured) / max(measured, floor)
   double leave_one_out_rms_relative = 0;  // interior levels, each predicted without any

@@ -22,6 +22,7 @@ struct LevelSeries {
   std::string luminance_unit;          // "cd/m2" or "relative"
   double scale_relative_sigma = 0;     // common to all readings, not in their sigma
   std::string source;                  // a file or recording, for messages
+  double flat_relative_sigma = 0;      // the flat's part of scale_relative_sigma
 
   // Errors: InvalidArgument naming source and reading (drive outside [0, 1], drives not ascending,
   // luminance or sigma negative or not finite, fewer than 4 different drives) or the source (a flat

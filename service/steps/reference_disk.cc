@@ -92,6 +92,7 @@ absl::StatusOr<fit::LevelSeries> MakeLevelSeries(std::span<const DiskReading> le
   const double flat_relative_sigma =
       std::sqrt(SumOver(pixels, brightest.flat_variance)) / SumOver(pixels, brightest.luminance);
   series.scale_relative_sigma = std::hypot(scale_relative_sigma, flat_relative_sigma);
+  series.flat_relative_sigma = flat_relative_sigma;
   series.luminance_unit = unit;
   series.source = source;
   return series;

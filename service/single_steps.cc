@@ -169,8 +169,7 @@ absl::StatusOr<v1::UniformityResult> MapUniformity(const SeriesChoice& choice,
 
 absl::StatusOr<v1::ActivationResult> FitRecording(const SeriesChoice& choice,
                                                   const fit::ActivationOptions& options,
-                                                  bool compare,
-                                                  const std::filesystem::path& folder,
+                                                  bool compare, const std::filesystem::path& folder,
                                                   const Watcher& watcher) {
   return Located(choice.recording, Fit(choice, options, compare, folder, watcher));
 }

@@ -48,8 +48,7 @@ absl::StatusOr<v1::UniformityResult> MapUniformity(const SeriesChoice& choice,
 // `compare`: with the table of all models under all weightings, likewise below.
 absl::StatusOr<v1::ActivationResult> FitRecording(const SeriesChoice& choice,
                                                   const fit::ActivationOptions& options,
-                                                  bool compare,
-                                                  const std::filesystem::path& folder,
+                                                  bool compare, const std::filesystem::path& folder,
                                                   const Watcher& watcher);
 
 // A series measured elsewhere. Errors: NotFound, InvalidArgument (a flat line included),

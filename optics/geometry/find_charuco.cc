@@ -54,7 +54,9 @@ cv::Ptr<cv::aruco::CharucoBoard> Create(const CharucoBoard& board) {
 
 // The detector wants 8 bits: all of the range that is there.
 cv::Mat1b Stretched(const Image<double>& view) {
-  const auto [low, high] = std::ranges::minmax(view.pixels());
+  const auto range = std::ranges::minmax(view.pixels());
+  const double low = range.min;
+  const double high = range.max;
   const double scale = high > low ? 255 / (high - low) : 0;
   cv::Mat1b grey(view.size().height_px, view.size().width_px);
   std::ranges::transform(view.pixels(), grey.begin(), [&](double value) {

@@ -72,10 +72,10 @@ std::vector<const DarkFrame*> DarksOfGain(std::span<const DarkFrame> darks, cons
     if (same && dark.image_dn.size() == size) found.push_back(&dark);
   }
   std::ranges::sort(found, {}, [](const DarkFrame* dark) { return dark->setting.exposure_s; });
-  const auto repeated = std::ranges::unique(found, [](const DarkFrame* a, const DarkFrame* b) {
+  const auto same = [](const DarkFrame* a, const DarkFrame* b) {
     return SameSetting(a->setting, b->setting);
-  });
-  found.erase(repeated.begin(), repeated.end());
+  };
+  found.erase(std::unique(found.begin(), found.end(), same), found.end());
   return found;
 }
 

@@ -99,7 +99,9 @@ AreaUniformity MeasureArea(const SmoothField& smooth, const Image<float>& values
   }
   const auto sigma_at = [&](size_t i) {
     const size_t width = values.size().width_px;
-    return smooth.SigmaAt(static_cast<double>(i % width), static_cast<double>(i / width));
+    const size_t x = i % width;
+    const size_t y = i / width;
+    return smooth.SigmaAt(static_cast<double>(x), static_cast<double>(y));
   };
   AreaUniformity area;
   area.g = {values.pixels()[lowest], values.pixels()[highest]};

@@ -11,7 +11,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kClosest_m = 0.01;
+constexpr double kClosestMetres = 0.01;
 
 double Radians(double degrees) { return degrees * (pi / 180); }
 
@@ -47,7 +47,7 @@ Arrival ArrivalAt(const PointLight& light, const Vec3& position_m) {
   const double distance_m = Length(to);
   // A light in the very place has no direction.
   if (distance_m == 0) return {{0, 1, 0}, {}};
-  const double reach_m = std::max(distance_m, kClosest_m);
+  const double reach_m = std::max(distance_m, kClosestMetres);
   const double fall = WithinRange(distance_m, light.range_m) / (reach_m * reach_m);
   return {(1 / distance_m) * to, (light.intensity_cd * fall) * light.colour};
 }

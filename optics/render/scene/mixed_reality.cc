@@ -41,8 +41,8 @@ double GainFromEv(double ev) { return std::exp2(ev); }
 double Ev100FromGain(double gain) { return -std::log2(gain / 100); }
 double GainFromEv100(double ev100) { return 100 * std::exp2(-ev100); }
 
-double CubemapLuminance(double value) { return kCubemapUnit_cd_m2 * value; }
-double CubemapValue(double luminance_cd_m2) { return luminance_cd_m2 / kCubemapUnit_cd_m2; }
+double CubemapLuminance(double value) { return kCubemapUnitCdPerM2 * value; }
+double CubemapValue(double luminance_cd_m2) { return luminance_cd_m2 / kCubemapUnitCdPerM2; }
 
 Rgb BalanceWhite(const Rgb& colour, const WhiteBalance& balance, int bits) {
   const double top = std::exp2(bits) - 1;

@@ -33,7 +33,7 @@ double Ev100FromGain(double gain);
 double GainFromEv100(double ev100);
 
 // The environment cubemap holds luminance as 1 for 100 cd/m2.
-constexpr double kCubemapUnit_cd_m2 = 100;
+constexpr double kCubemapUnitCdPerM2 = 100;
 double CubemapLuminance(double value);
 double CubemapValue(double luminance_cd_m2);
 

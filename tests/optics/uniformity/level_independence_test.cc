@@ -57,7 +57,7 @@ TEST(LevelIndependence, KeepsItsSizeWhereGIsShared) {
 }
 
 TEST(LevelIndependence, FindsAGThatTiltsInTheDark) {
-  const auto test = TestLevelIndependence(Levels(0.03, 1));
+  const auto test = TestLevelIndependence(Levels(0.08, 1));
   ASSERT_TRUE(test.ok()) << test.status();
   EXPECT_LT(test->p_value, 1e-6);
   EXPECT_GT(test->failing_share, 0.3);

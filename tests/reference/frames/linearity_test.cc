@@ -8,6 +8,7 @@
 #include "optics/reduce/measure_exposure_pairs.h"
 #include "optics/reduce/merge_bracket.h"
 #include "optics/reduce/order_bracket.h"
+#include "optics/reduce/rows.h"
 #include "optics/sensor/emva1288/line_fit.h"
 #include "tests/reference/frames/real_frames.h"
 
@@ -56,7 +57,8 @@ class RealLinearityTest : public RealBracketTest {
   Residuals ResidualsOf(const std::string& series, const Calibration& calibration) {
     const std::vector<Stack> stacks = StackAll(lights_[series]);
     const ReduceOptions options = Strict();
-    const auto bracket = *OrderBracket(stacks, calibration, options);
+    auto bracket = *OrderBracket(stacks, calibration);
+    MaskSaturation(AllRows(stacks.front().size()), options, bracket);
     const Image<float> expected =
         ExpectedRate(bracket, calibration, {options.smoothing_radius, options.colour_period_px});
     std::vector<MeasuredImage> rates;

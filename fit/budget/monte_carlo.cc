@@ -61,7 +61,7 @@ void AddBatch(std::vector<double>& values, double coverage, Progress& progress) 
   }
   std::sort(values.begin(), values.end());
   const auto count = static_cast<double>(values.size());
-  const auto inside = static_cast<size_t>(coverage * count + 0.5);
+  const auto inside = static_cast<size_t>(std::lround(coverage * count));
   const size_t below = (values.size() - inside) / 2;
   const double figures[] = {batch.mean, batch.Sigma(), values[below],
                             values[std::min(below + inside, values.size() - 1)]};

@@ -20,6 +20,7 @@
 #include "fit/cube/table_file.h"
 #include "fit/field/common_exponent.h"
 #include "optics/uniformity/uniformity_map.h"
+#include "service/budget.h"
 #include "service/preflight/certification.h"
 #include "service/report/report.h"
 #include "service/result_json.h"
@@ -140,8 +141,8 @@ void AddCertification(const Certification& certification, v1::RunResult& result)
 }
 
 void ListFiles(v1::RunResult& result) {
-  std::vector<std::string> files = {"uniformity.json", "activation.json", "result.json",
-                                    "report.html"};
+  std::vector<std::string> files = {"uniformity.json", "activation.json", "budget.json",
+                                    "result.json", "report.html"};
   files.insert(files.end(), std::begin(kTableFiles), std::end(kTableFiles));
   for (const auto* maps : {&result.uniformity().maps(), &result.reduction().maps(),
                            &result.activation().field().maps()}) {
@@ -181,6 +182,10 @@ absl::StatusOr<v1::RunResult> Write(const Findings& found, const capture::Record
   ListFiles(result);
   EYEBOX_RETURN_IF_ERROR(WriteJson(out / "uniformity.json", result.uniformity()));
   EYEBOX_RETURN_IF_ERROR(WriteJson(out / "activation.json", result.activation()));
+  EYEBOX_ASSIGN_OR_RETURN(
+      const v1::BudgetResult budget,
+      MakeBudget(found.activation.best, found.levels.series, {.shares = found.levels.shares}));
+  EYEBOX_RETURN_IF_ERROR(WriteJson(out / "budget.json", budget));
   EYEBOX_RETURN_IF_ERROR(WriteReport(out / "report.html", found, header, result));
   EYEBOX_RETURN_IF_ERROR(WriteJson(out / "result.json", result));
   return result;

@@ -30,9 +30,10 @@ struct RunOptions {
 };
 
 // Reduces, maps, fits, designs and certifies, and writes into `out` (created if missing):
-// uniformity.json, activation.json, linearize.cube, linearize.png, result.json, report.html and
-// the maps as NPY. The files depend on the recording's content and the options alone: no time,
-// no path, no host. A file appears whole or not at all.
+// uniformity.json, activation.json, budget.json, linearize.cube, linearize.png, result.json,
+// report.html and the maps as NPY. The files depend on the recording's content and the options
+// alone: no time, no path, no host. A file appears whole or not at all.
+//
 // Errors: those of the recording (NotFound, DataLoss, InvalidArgument), FailedPrecondition (the
 // recording cannot give what was asked: says what to record), Cancelled, the errno of the disk.
 absl::StatusOr<v1::RunResult> RunRecording(const std::filesystem::path& recording,

@@ -2,12 +2,16 @@
 #include <optional>
 #include <string>
 
+#include "capture/base/file.h"
 #include "capture/base/status.h"
+#include "service/budget.h"
+#include "service/cli/budget_output.h"
 #include "service/cli/colour_output.h"
 #include "service/cli/command.h"
 #include "service/cli/terminal.h"
 #include "service/colour.h"
 #include "service/report/report.h"
+#include "service/result_json.h"
 #include "service/single_steps.h"
 
 namespace eyebox::service::cli {
@@ -20,6 +24,8 @@ struct Options {
   std::string sensor;
   fit::ActivationOptions fit;
   std::string out;
+  std::string budget;
+  bool budget_trials = false;
   bool all_models = false;
   bool json = false;
 };
@@ -35,10 +41,11 @@ const std::map<std::string, fit::Weighting> kWeightings = {
     {"unweighted", fit::Weighting::kUnweighted}};
 
 absl::Status FitColours(const Options& options) {
-  if (options.fit.model || options.fit.weighting || !options.out.empty() || options.series) {
+  if (options.fit.model || options.fit.weighting || !options.out.empty() || options.series ||
+      !options.budget.empty()) {
     return BadInput(options.csv,
-                    "it is a series of colours, and --model, --weighting, --series and --out are "
-                    "for grey levels",
+                    "it is a series of colours, and --model, --weighting, --series, --out and "
+                    "--budget are for grey levels",
                     "leave them out");
   }
   EYEBOX_ASSIGN_OR_RETURN(const v1::ColourResult result, FitColourCsv(options.csv, {}));
@@ -73,7 +80,23 @@ void PrintVerdict(const v1::CommonExponentResult& field) {
   }
 }
 
+// Not of the fit's result message: a budget has one of its own.
+absl::Status WriteBudget(const Options& options, const v1::ActivationResult& result) {
+  BudgetRequest request;
+  if (options.budget_trials) request.trials = fit::MonteCarloOptions{.tolerance_share = 0.2};
+  const std::string& source = options.csv.empty() ? options.recording : options.csv;
+  EYEBOX_ASSIGN_OR_RETURN(const v1::BudgetResult budget, BudgetOfResult(result, source, request));
+  EYEBOX_ASSIGN_OR_RETURN(const std::string json, ToJson(budget));
+  EYEBOX_RETURN_IF_ERROR(WriteFileAtomically(options.budget, json));
+  if (!options.json) PrintBudget(budget);
+  return absl::OkStatus();
+}
+
 absl::Status Run(const Options& options) {
+  if (options.budget_trials && options.budget.empty()) {
+    return BadInput("--budget-trials", "it checks a budget, and none was asked for",
+                    "add --budget FILE");
+  }
   if (!options.csv.empty()) {
     EYEBOX_ASSIGN_OR_RETURN(const bool colours, fit::HoldsColours(options.csv));
     if (colours) return FitColours(options);
@@ -85,7 +108,10 @@ absl::Status Run(const Options& options) {
                          options.all_models, options.out, TerminalWatcher())
           : FitCsv(options.csv, options.fit, options.all_models));
   PrintWarnings(result.warnings());
-  if (options.json) return PrintJson(result);
+  if (options.json) {
+    if (!options.budget.empty()) EYEBOX_RETURN_IF_ERROR(WriteBudget(options, result));
+    return PrintJson(result);
+  }
   std::printf("  %s, weights %s: rms %s, leave-one-out rms %s\n", result.model().c_str(),
               result.weighting().c_str(), report::Percent(result.rms_relative()).c_str(),
               report::Percent(result.leave_one_out_rms_relative()).c_str());
@@ -93,6 +119,7 @@ absl::Status Run(const Options& options) {
   std::printf("  %s\n", result.choice_reason().c_str());
   PrintVerdict(result.field());
   PrintComparison(result);
+  if (!options.budget.empty()) return WriteBudget(options, result);
   return absl::OkStatus();
 }
 
@@ -101,7 +128,8 @@ absl::Status Run(const Options& options) {
 void AddFit(CLI::App& app, Work& work) {
   AddCommand<Options>(
       app, work, "fit", "Fit how luminance answers to the drive value.",
-      "eyebox fit --csv series.csv --json > fit.json\n  eyebox fit recording --json > fit.json",
+      "eyebox fit --csv series.csv --json > fit.json\n  eyebox fit recording --json > fit.json\n  "
+      "eyebox fit --csv series.csv --budget budget.json --budget-trials",
       [](CLI::App& command, Options& options) {
         auto* source = command.add_option_group("source", "Exactly one of");
         source->add_option("recording", options.recording, "Folder of the recording");
@@ -124,6 +152,11 @@ void AddFit(CLI::App& app, Work& work) {
             ->transform(CLI::CheckedTransformer(kWeightings));
         command.add_option("--out", options.out,
                            "Write the field's k, delta and gamma by region there as NPY");
+        command.add_option("--budget", options.budget,
+                           "Write there, as JSON, the uncertainty of a table's drive values and "
+                           "of luminance through it, with its sources by share");
+        command.add_flag("--budget-trials", options.budget_trials,
+                         "Check the budget by fitting random series (JCGM 101; seconds)");
         command.add_flag("--all-models", options.all_models,
                          "Add a table of every model under every weighting");
         command.add_flag("--json", options.json, "Print the result as JSON on stdout");

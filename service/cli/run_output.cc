@@ -2,7 +2,11 @@
 
 #include <cstdio>
 
+#include "capture/base/status.h"
+#include "eyebox/v1/budget.pb.h"
+#include "service/cli/budget_output.h"
 #include "service/cli/terminal.h"
+#include "service/result_json.h"
 
 namespace eyebox::service::cli {
 
@@ -25,6 +29,9 @@ absl::Status RunOutput::Print(const absl::StatusOr<v1::RunResult>& result,
   PrintParameters(result->parameters());
   PrintParameters(result->uniformity().parameters());
   for (const v1::CubeResult& cube : result->cubes()) PrintCertificate(cube);
+  v1::BudgetResult budget;
+  EYEBOX_RETURN_IF_ERROR(ReadJson(folder / "budget.json", budget));
+  PrintBudget(budget);
   std::printf("See %s\n", (folder / "report.html").c_str());
   return absl::OkStatus();
 }

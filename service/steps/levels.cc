@@ -151,6 +151,7 @@ absl::StatusOr<MeasuredLevels> ReduceGreyLevels(capture::RecordingReader& record
                             CorrectForDrift(recording, groups[i], drift.drift, reduced->luminance));
     readings.push_back(ReadReferenceDisk(reduced->luminance, calibration, drive));
     readings.back().relative_sigma = drift_sigma;
+    levels.shares.push_back({reduced->report.budget, drift_sigma});
     AddToStack(*reduced, drive, calibration, levels);
     levels.reference = {drive, *std::move(reduced), figures};
   }

@@ -10,6 +10,7 @@
 #include "absl/status/statusor.h"
 #include "capture/recording/reader.h"
 #include "fit/activation/level_series.h"
+#include "fit/budget/budget_terms.h"
 #include "fit/field/common_exponent.h"
 #include "optics/reduce/reduce_level.h"
 #include "optics/uniformity/level_independence.h"
@@ -29,8 +30,9 @@ struct GreyLevel {
 int LevelBlockPx(ImageSize size);
 
 struct MeasuredLevels {
-  fit::LevelSeries series;  // at the reference point, see reference_disk.h
-  GreyLevel reference;      // the brightest level: g is measured there
+  fit::LevelSeries series;                 // at the reference point, see reference_disk.h
+  std::vector<fit::ReadingShares> shares;  // of the variance of each of its readings
+  GreyLevel reference;                     // the brightest level: g is measured there
   ImageSize size;
   std::vector<double> drives;    // [levels], ascending
   std::vector<float> luminance;  // [levels, height * width]; NaN where a pixel has no value

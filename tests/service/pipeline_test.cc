@@ -15,6 +15,7 @@
 #include "capture/camera/sim/sim_rig.h"
 #include "capture/camera/sim/truth.h"
 #include "capture/recording/reader.h"
+#include "eyebox/v1/budget.pb.h"
 #include "fit/cube/table_file.h"
 #include "service/artifacts.h"
 #include "service/result_json.h"
@@ -146,6 +147,29 @@ TEST_F(Pipeline, WritesWhatItLists) {
   v1::RunResult stored;
   ASSERT_TRUE(ReadJson(Out() / "result.json", stored).ok());
   EXPECT_EQ(*ToJson(stored), *ToJson(Result()));
+}
+
+TEST_F(Pipeline, KeepsABudgetThatNamesTheReductionsTerms) {
+  ASSERT_GT(Result().files_size(), 0);
+  v1::BudgetResult budget;
+  ASSERT_TRUE(ReadJson(Out() / "budget.json", budget).ok());
+  ASSERT_GT(budget.points_size(), 4);
+  EXPECT_GE(Named(budget.parameters(), "condition_number").value(), 1);
+  for (const v1::BudgetPoint& point : budget.points()) {
+    std::map<std::string, double> share;
+    double sum = 0;
+    for (const v1::BudgetTerm& term : point.terms()) {
+      share[term.name()] = term.luminance_share();
+      sum += term.luminance_share();
+    }
+    EXPECT_NEAR(sum, 1, 1e-9);
+    EXPECT_GT(share["photon"] + share["read"] + share["dark"] + share["lack_of_fit"] +
+                  share["scale"] + share["flat"],
+              0.5);
+    EXPECT_TRUE(share.contains("photon") && share.contains("dark")) << point.u();
+    EXPECT_GT(point.luminance_sigma(), 0);
+    EXPECT_LT(point.luminance_sigma(), 0.2 * point.luminance());
+  }
 }
 
 TEST_F(Pipeline, TheSameRecordingGivesTheSameBytesReplayedOrNot) {

@@ -7,8 +7,8 @@
 #include "capture/base/file.h"
 #include "capture/base/status.h"
 #include "fit/renderer/compare_models.h"
-#include "service/predict_rows.h"
 #include "service/results/renderer.h"
+#include "service/scene/post_processing.h"
 
 namespace eyebox::service {
 namespace {

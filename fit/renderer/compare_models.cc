@@ -224,6 +224,10 @@ SetError ErrorOf(const RenderedSet& set, const std::vector<optics::Rgb>& predict
       const double difference =
           kLevels * (predicted[row][channel] - (*set.rows[row].stored)[channel]);
       sizes.push_back(std::abs(difference));
+      if (sizes.back() > error.worst) {
+        error.worst = sizes.back();
+        error.worst_row = static_cast<int>(row);
+      }
       error.mean += sizes.back() / (3 * rows);
       error.bias[channel] += difference / rows;
       squares[channel] += difference * difference / rows;

@@ -39,6 +39,8 @@ struct SetError {
   double mean = 0;
   optics::Rgb bias = {};        // mean of predicted - stored
   optics::Rgb bias_sigma = {};  // its standard error
+  double worst = 0;             // largest of them
+  int worst_row = -1;           // where it lies
 };
 
 struct ComparedModel {

@@ -5,6 +5,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <CLI/Validators.hpp>
 #include <functional>
 #include <memory>
 #include <string>
@@ -27,6 +28,16 @@ void AddCommand(CLI::App& app, Work& work, const std::string& name, const std::s
   auto options = std::make_shared<Options>();
   bind(*command, *options);
   command->callback([&work, options, run] { work = [options, run] { return run(*options); }; });
+}
+
+// For an option whose value is one of the names of `named`; --help lists the names alone.
+template <typename Named>
+CLI::CheckedTransformer OneOf(const Named& named) {
+  std::string names;
+  for (const auto& [name, value] : named) names += (names.empty() ? "{" : ",") + name;
+  CLI::CheckedTransformer transformer(named);
+  transformer.description(names + "}");
+  return transformer;
 }
 
 inline constexpr char kSensorHelp[] =

@@ -209,7 +209,7 @@ void AddColourOptions(CLI::App& command, ColourChoices& choices) {
   command
       .add_option("--gamut", choices.gamut,
                   "Of a colour fit: native (default), srgb or p3, the last two with D65")
-      ->transform(CLI::CheckedTransformer(kGamuts));
+      ->transform(OneOf(kGamuts));
   command
       .add_option("--white-point", choices.white_point,
                   "Of a colour fit: x,y of white (default: the gamut's own)")
@@ -220,7 +220,7 @@ void AddColourOptions(CLI::App& command, ColourChoices& choices) {
           "--scale", choices.scale,
           "Of a colour fit: colours (default), the brightest white that leaves every colour "
           "reachable, or white, the brightest of all")
-      ->transform(CLI::CheckedTransformer(kScales));
+      ->transform(OneOf(kScales));
 }
 
 }  // namespace
@@ -247,7 +247,7 @@ void AddCube(CLI::App& app, Work& work) {
                         "hdrp (.cube), pps (strip PNG), resolve (.cube) or ptb (256 x 3 text, for "
                         "load in MATLAB)")
             ->required()
-            ->transform(CLI::CheckedTransformer(kTargets));
+            ->transform(OneOf(kTargets));
         command
             .add_option("--size", options.size,
                         "Entries per axis (default: 32, ptb: 256); pps: at most 32")
@@ -255,7 +255,7 @@ void AddCube(CLI::App& app, Work& work) {
         command
             .add_option("--method", request.design.method,
                         "minimax (default) or published, the method of the literature")
-            ->transform(CLI::CheckedTransformer(kMethods));
+            ->transform(OneOf(kMethods));
         command.add_option("--storage", options.storage,
                            "Certify also after half, r11g11b10, filter8, output8 (parted by "
                            "commas): each by itself and all together");

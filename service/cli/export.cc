@@ -40,7 +40,7 @@ void Bind(CLI::App& command, Options& options) {
       .add_option_function<FrameKind>(
           "--kind", [&options](const FrameKind& kind) { options.filter.kind = kind; },
           "Only light, dark or flat")
-      ->transform(CLI::CheckedTransformer(kKinds));
+      ->transform(OneOf(kKinds));
   command.add_option_function<std::string>(
       "--series", [&options](const std::string& series) { options.filter.series = series; },
       "Only this series; '' is the main one");

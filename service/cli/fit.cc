@@ -144,12 +144,12 @@ void AddFit(CLI::App& app, Work& work) {
                 "--model", options.fit.model,
                 "power_offset, gamma_with_cutoff, srgb_like or monotone_spline (default: the "
                 "one that predicts best)")
-            ->transform(CLI::CheckedTransformer(kModels));
+            ->transform(OneOf(kModels));
         command
             .add_option("--weighting", options.fit.weighting,
                         "measured_sigma, relative or unweighted (default: measured sigmas where "
                         "there are any, else relative)")
-            ->transform(CLI::CheckedTransformer(kWeightings));
+            ->transform(OneOf(kWeightings));
         command.add_option("--out", options.out,
                            "Write the field's k, delta and gamma by region there as NPY");
         command.add_option("--budget", options.budget,

@@ -107,7 +107,7 @@ void BindTarget(CLI::App& command, Options& options) {
 
 void BindLens(CLI::App& command, Options& options) {
   command.add_option("--lens", options.request.lens.lens, "pinhole or equidistant (wide fields)")
-      ->transform(CLI::CheckedTransformer(kLenses));
+      ->transform(OneOf(kLenses));
   command
       .add_option("--distortion-terms", options.request.lens.distortion_terms,
                   "Free ones of k1 k2 p1 p2 k3, or of k1 k2 k3 k4")

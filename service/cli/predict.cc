@@ -18,7 +18,7 @@ struct Options {
   std::string csv;
   std::string cube;
   std::string out;
-  std::string pipeline = "hdrp";
+  optics::Renderer pipeline = optics::Renderer::kHdrp;
   std::optional<fit::RowMaterial> material;
   std::string model = "measured";
   std::string scene;
@@ -28,10 +28,16 @@ struct Options {
 
 const std::map<std::string, fit::RowMaterial> kMaterials = {
     {"unlit", fit::RowMaterial::kUnlit}, {"lambertian", fit::RowMaterial::kLambertian}};
+const std::map<std::string, optics::Renderer> kPipelines = {
+    {"hdrp", optics::Renderer::kHdrp},
+    {"urp", optics::Renderer::kUrp},
+    {"built_in_gamma", optics::Renderer::kBuiltInGamma},
+    {"built_in_linear", optics::Renderer::kBuiltInLinear}};
 
 void Print(const v1::RowPredictionResult& result) {
-  std::printf("%d rows, %s, %s, %s model\n", result.rows(), result.pipeline().c_str(),
-              result.material().c_str(), result.model().c_str());
+  std::printf("%d rows, %s, %s%s%s\n", result.rows(), result.pipeline().c_str(),
+              result.material().c_str(),
+              result.model().empty() ? "" : ", model: ", result.model().c_str());
   std::printf("  terms evaluated: %s\n", absl::StrJoin(result.terms(), ", ").c_str());
   std::printf("  stages after shading: %s\n", absl::StrJoin(result.stages(), ", ").c_str());
   PrintParameters(result.parameters());
@@ -40,6 +46,7 @@ void Print(const v1::RowPredictionResult& result) {
     std::printf("  against the rows' v, in 1/255: median %.3f, mean %.3f, bias %+.2f %+.2f %+.2f\n",
                 error.median_levels(), error.mean_levels(), error.bias_levels(0),
                 error.bias_levels(1), error.bias_levels(2));
+    std::printf("  worst %.1f, in row %d\n", error.worst_levels(), error.worst_row());
   }
   std::printf("Wrote %s\n", result.file().c_str());
 }
@@ -50,6 +57,8 @@ absl::Status Run(const Options& options) {
   request.csv = options.csv;
   request.cube = options.cube;
   request.out = options.out;
+  request.renderer = options.pipeline;
+  request.activation = options.activation;
   request.material = *options.material;
   request.published = options.model == "published";
   EYEBOX_ASSIGN_OR_RETURN(const v1::RowPredictionResult result, PredictRows(request));
@@ -76,19 +85,19 @@ void AddPredict(CLI::App& app, Work& work) {
         auto* scene = source->add_option("--scene", options.scene,
                                          "Materials, lights and patches (textproto)");
         source->require_option(1);
-        command
-            .add_option("--activation", options.activation,
-                        "Of the scene's display: what `eyebox fit --json` printed")
-            ->needs(scene);
-        command
-            .add_option("--pipeline", options.pipeline,
-                        "hdrp; rows describe that pipeline's lights")
-            ->check(CLI::IsMember({"hdrp"}))
-            ->capture_default_str();
+        command.add_option("--activation", options.activation,
+                           "Of the display, to tell luminance or X, Y, Z: what `eyebox fit --json` "
+                           "printed");
+        auto* pipeline = command
+                             .add_option("--pipeline", options.pipeline,
+                                         "Unity's renderer that the rows are for (default: hdrp)")
+                             ->transform(OneOf(kPipelines));
         csv->needs(command.add_option("--material", options.material, "unlit or lambertian")
-                       ->transform(CLI::CheckedTransformer(kMaterials)));
-        auto* cube = command.add_option(
-            "--cube", options.cube, "Table of External tonemapping (default: tonemapping None)");
+                       ->transform(OneOf(kMaterials)));
+        auto* cube = command.add_option("--cube", options.cube,
+                                        "Table that colours pass (default: none): .cube of HDRP's "
+                                        "External tonemapping, strip PNG "
+                                        "of the other pipelines");
         csv->needs(command.add_option(
             "--out", options.out, "File to write: the rows with u_hat_r.. and v_hat_r.. appended"));
         auto* model = command
@@ -101,7 +110,7 @@ void AddPredict(CLI::App& app, Work& work) {
             "Mean of HDRP's dither at the pixel looked at, in 1/255 (default: as "
             "measured at one pixel; 0 for another)");
         // A scene file says these itself.
-        for (auto* of_rows : {cube, model, dither}) scene->excludes(of_rows);
+        for (auto* of_rows : {pipeline, cube, model, dither}) scene->excludes(of_rows);
         command.add_flag("--json", options.json, "Print the result as JSON on stdout");
       },
       Run);

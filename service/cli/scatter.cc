@@ -64,9 +64,8 @@ absl::Status Run(const Options& options) {
 
 void BindModel(CLI::App& command, ScatterRequest& request) {
   command.add_option("--core", request.fit.core, "gaussian, or disk for a pupil or a target")
-      ->transform(CLI::CheckedTransformer(kCores));
-  command.add_option("--tail", request.fit.tail, "moffat or power_law")
-      ->transform(CLI::CheckedTransformer(kTails));
+      ->transform(OneOf(kCores));
+  command.add_option("--tail", request.fit.tail, "moffat or power_law")->transform(OneOf(kTails));
   command.add_option("--reach-deg", request.fit.reach_deg, "Beyond it w is 0")
       ->capture_default_str();
   command.add_flag("--pedestal", request.fit.pedestal, "Fit an even pedestal too");

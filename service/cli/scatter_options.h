@@ -2,12 +2,10 @@
 #ifndef EYEBOX_SERVICE_CLI_SCATTER_OPTIONS_H_
 #define EYEBOX_SERVICE_CLI_SCATTER_OPTIONS_H_
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <map>
 #include <string>
 
+#include "service/cli/command.h"
 #include "service/steps/take_scatter_out.h"
 
 namespace eyebox::service::cli {
@@ -21,7 +19,7 @@ inline void AddSurround(CLI::App& command, optics::Surround& surround) {
       .add_option("--surround", surround,
                   "Beside the image the display is dark, continued as at its border, or unknown "
                   "(as continued, but counted as uncertain)")
-      ->transform(CLI::CheckedTransformer(kNames));
+      ->transform(OneOf(kNames));
 }
 
 // --scatter and --surround.

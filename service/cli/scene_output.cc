@@ -17,6 +17,10 @@ void PrintPatch(const v1::PatchPrediction& patch) {
     std::printf("   %.5g +- %.2g %s", patch.luminance().value(), patch.luminance().sigma(),
                 patch.luminance().unit().c_str());
   }
+  for (const v1::Parameter& quantity : patch.tristimulus()) {
+    std::printf("   %s %.5g +- %.2g", quantity.name().c_str(), quantity.value(), quantity.sigma());
+  }
+  if (patch.tristimulus_size() > 0) std::printf(" %s", patch.tristimulus(0).unit().c_str());
   std::printf("\n  evaluated: %s\n", absl::StrJoin(patch.evaluated(), ", ").c_str());
   if (patch.left_out_size() > 0) {
     std::printf("  left out: %s\n", absl::StrJoin(patch.left_out(), "; ").c_str());

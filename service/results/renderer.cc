@@ -48,6 +48,8 @@ void DescribeRenderError(const fit::SetError& error, v1::RenderError& message) {
   message.set_mean_levels(error.mean);
   message.mutable_bias_levels()->Add(error.bias.begin(), error.bias.end());
   message.mutable_bias_sigma_levels()->Add(error.bias_sigma.begin(), error.bias_sigma.end());
+  message.set_worst_levels(error.worst);
+  message.set_worst_row(error.worst_row + 1);
 }
 
 void DescribeKnots(const fit::RecoveredKnots& recovered, v1::KnotsResult& result) {

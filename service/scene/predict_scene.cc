@@ -1,6 +1,5 @@
 #include "service/scene/predict_scene.h"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -8,14 +7,10 @@
 
 #include "absl/strings/str_cat.h"
 #include "capture/base/status.h"
-#include "fit/activation/fit_activation.h"
 #include "fit/renderer/hdrp_model.h"
-#include "optics/render/material/rgb_sum.h"
-#include "optics/render/render_pipeline.h"
-#include "service/predict_rows.h"
-#include "service/result_json.h"
-#include "service/results/activation.h"
+#include "service/display.h"
 #include "service/results/parameter.h"
+#include "service/scene/post_processing.h"
 #include "service/scene/read_scene.h"
 
 namespace eyebox::service {
@@ -25,85 +20,15 @@ using optics::LightUse;
 using optics::Renderer;
 using optics::Rgb;
 
-// Drives that differ by less are one grey.
-constexpr double kGreyTolerance = 0.5 / 255;
-
-struct PostProcessing {
-  optics::RenderPipeline lights_apart;  // what direct and ambient light pass before they are added
-  optics::RenderPipeline stages;        // what their sum passes
-};
-
-absl::StatusOr<PostProcessing> PostProcessingOf(const SceneInput& input,
-                                                const fit::HdrpModel& model) {
-  switch (input.scene.settings.renderer) {
-    case Renderer::kBuiltInGamma:
-      return PostProcessing{{}, {optics::Saturate{}, optics::QuantiseTo8Bits{}}};
-    case Renderer::kUrp:
-    case Renderer::kBuiltInLinear:
-      return PostProcessing{{},
-                            {optics::EncodeSrgb{}, optics::Saturate{}, optics::QuantiseTo8Bits{}}};
-    case Renderer::kHdrp:
-      break;
-  }
-  std::optional<optics::ColourTable> cube;
-  if (!input.cube.empty()) {
-    EYEBOX_ASSIGN_OR_RETURN(cube, ReadExternalTable(input.cube));
-  }
-  EYEBOX_ASSIGN_OR_RETURN(const fit::HdrpRenderer renderer,
-                          fit::HdrpRenderer::Create(model, cube ? &*cube : nullptr));
-  PostProcessing post;
-  post.stages = renderer.Stages();
-  if (model.stores_lights_apart) {
-    post.lights_apart = {optics::PackedFloatBuffer{optics::Rounding::kTruncate}};
-  }
-  return post;
-}
-
-struct Display {
-  fit::ActivationFit fit;  // activation, model and covariance alone
-  std::string unit;
-};
-
-absl::StatusOr<Display> ReadDisplay(const std::filesystem::path& file) {
-  v1::ActivationResult result;
-  EYEBOX_RETURN_IF_ERROR(ReadJson(file, result));
-  Display display;
-  display.unit = result.luminance_unit();
-  EYEBOX_ASSIGN_OR_RETURN(display.fit.activation, ActivationOf(result, file.string()));
-  display.fit.covariance = {result.covariance().begin(), result.covariance().end()};
-  const auto count = static_cast<size_t>(result.parameters_size());
-  if (display.fit.covariance.size() != count * count) {
-    return BadInput(
-        file.string() + " covariance",
-        absl::StrCat("has ", display.fit.covariance.size(), " values for ", count, " parameters"),
-        "fit again");
-  }
-  for (const auto model :
-       {fit::ActivationModel::kPowerOffset, fit::ActivationModel::kGammaWithCutoff,
-        fit::ActivationModel::kSrgbLike, fit::ActivationModel::kMonotoneSpline}) {
-    if (result.model() != fit::NameOf(model)) continue;
-    display.fit.model = model;
-    return display;
-  }
-  return BadInput(file.string() + " model", "is '" + result.model() + "'", "fit again");
-}
-
-bool IsGrey(const Rgb& v) {
-  const auto [least, most] = std::minmax_element(v.begin(), v.end());
-  return *most - *least < kGreyTolerance;
-}
-
-void AddLuminance(const Display& display, const Rgb& v, v1::PatchPrediction& patch) {
-  if (!IsGrey(v)) {
+void AddAnswer(const Display& display, const Rgb& v, v1::PatchPrediction& patch) {
+  const std::vector<v1::Parameter> answer = display.Answer(v);
+  if (answer.empty()) {
     patch.add_left_out("luminance: the drive is coloured and the activation is that of grey");
-    return;
+  } else if (answer.size() == 1) {
+    *patch.mutable_luminance() = answer.front();
+  } else {
+    patch.mutable_tristimulus()->Add(answer.begin(), answer.end());
   }
-  const double drive = (v[0] + v[1] + v[2]) / 3;
-  v1::Parameter& luminance = *patch.mutable_luminance();
-  luminance.set_name("luminance");
-  luminance.set_value(display.fit.activation.Luminance(drive));
-  luminance.set_sigma(fit::LuminanceSigma(display.fit, drive));
-  luminance.set_unit(display.unit);
 }
 
 void AddTerms(const SceneInput& input, const optics::TermsUsed& used, v1::PatchPrediction& patch) {
@@ -140,13 +65,13 @@ class Predictor {
     const optics::ShadedParts parts = ShadeParts(prepared_, patch);
     const Rgb u = {parts.direct[0] + parts.ambient[0], parts.direct[1] + parts.ambient[1],
                    parts.direct[2] + parts.ambient[2]};
-    const Rgb v = Stored(parts);
+    const Rgb v = post_.Stored(parts);
     predicted.mutable_u()->Add(u.begin(), u.end());
     predicted.mutable_v()->Add(v.begin(), v.end());
     const optics::TermsUsed used = ExplainShading(input_.scene, prepared_, patch);
     predicted.add_evaluated("material colour");
     AddTerms(input_, used, predicted);
-    if (display_ != nullptr) AddLuminance(*display_, v, predicted);
+    if (display_ != nullptr) AddAnswer(*display_, v, predicted);
     if (input_.mixed_reality) AddBalanced(*input_.mixed_reality, v, predicted);
     needed_.resize(used.lights.size());
     for (size_t i = 0; i < used.lights.size(); ++i) {
@@ -161,13 +86,6 @@ class Predictor {
   }
 
  private:
-  Rgb Stored(const optics::ShadedParts& parts) const {
-    const Rgb direct = RunPipeline(post_.lights_apart, parts.direct);
-    const Rgb ambient = RunPipeline(post_.lights_apart, parts.ambient);
-    return RunPipeline(post_.stages,
-                       {direct[0] + ambient[0], direct[1] + ambient[1], direct[2] + ambient[2]});
-  }
-
   const SceneInput& input_;
   optics::PreparedScene prepared_;
   const PostProcessing& post_;
@@ -211,10 +129,11 @@ absl::StatusOr<v1::ScenePrediction> PredictScene(const SceneRequest& request) {
   // The mean of the dither belongs to one pixel of the captures that it was measured in.
   model.dither_mean_levels = 0;
   Settle(model, input);
-  EYEBOX_ASSIGN_OR_RETURN(const PostProcessing post, PostProcessingOf(input, model));
+  EYEBOX_ASSIGN_OR_RETURN(const PostProcessing post,
+                          PostProcessingOf(input.scene.settings.renderer, model, input.cube));
   std::optional<Display> display;
   if (!request.activation.empty()) {
-    EYEBOX_ASSIGN_OR_RETURN(display, ReadDisplay(request.activation));
+    EYEBOX_ASSIGN_OR_RETURN(display, Display::Read(request.activation));
   }
   v1::ScenePrediction result;
   Describe(input, post, result);

@@ -58,11 +58,11 @@ absl::Status ReadSettings(const v1::Scene& proto, const SceneField& field, Scene
     input.cube = std::filesystem::path(input.file).parent_path() / proto.cube_file();
   }
   if (settings.renderer == Renderer::kHdrp) return absl::OkStatus();
-  const char* odd = settings.exposure_ev != 0        ? "exposure_ev"
-                    : proto.has_rendering_constant() ? "rendering_constant"
-                    : !proto.cube_file().empty()     ? "cube_file"
-                    : proto.has_pass_through()       ? "pass_through"
-                                                     : nullptr;
+  const char* odd = settings.exposure_ev != 0           ? "exposure_ev"
+                    : proto.has_rendering_constant()    ? "rendering_constant"
+                    : input.cube.extension() == ".cube" ? "cube_file"
+                    : proto.has_pass_through()          ? "pass_through"
+                                                        : nullptr;
   if (odd == nullptr) return absl::OkStatus();
   return field.Of(odd).Refuse("is a setting of HDRP", "leave it out for this renderer");
 }

@@ -39,6 +39,9 @@ struct ActivationSolution {
   std::string termination;  // why the solver stopped and which parameter ended at a bound
 };
 
+// Relative errors are of at least this luminance: kRelativeFloor of the brightest reading.
+double RelativeFloor(const LevelSeries& series);
+
 // The problem that `fit` solved: its readings under its weights.
 ActivationProblem ProblemOf(const ActivationFit& fit);
 

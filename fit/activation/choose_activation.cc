@@ -1,3 +1,4 @@
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -23,6 +24,18 @@ bool PredictsBetter(const ActivationFit& candidate, const ActivationFit& simpler
          simpler.leave_one_out_rms_relative;
 }
 
+std::string ScatterRemark(const ActivationFit& fit) {
+  const double alone = LeftOutByScatter(fit);
+  if (alone == 0) return "";
+  if (fit.weighting == Weighting::kMeasuredSigma) {
+    return absl::StrFormat("; the stated sigmas of the readings would alone leave %.3g %%",
+                           100 * alone);
+  }
+  return absl::StrFormat(
+      "; its readings scatter by %.3g %% about it, which would alone leave %.3g %%",
+      100 * std::sqrt(fit.chi_square / fit.degrees_of_freedom), 100 * alone);
+}
+
 std::string Reason(const ActivationChoice& choice, const std::string& failures) {
   std::string reason = absl::StrCat(std::string(NameOf(choice.best.model)), " was taken");
   if (choice.tried.size() > 1) {
@@ -35,7 +48,7 @@ std::string Reason(const ActivationChoice& choice, const std::string& failures) 
                           std::string(NameOf(fit.model)), 100 * fit.leave_one_out_rms_relative,
                           fit.aicc);
   }
-  return reason + failures;
+  return reason + failures + ScatterRemark(choice.best);
 }
 
 }  // namespace

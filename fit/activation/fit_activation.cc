@@ -19,8 +19,6 @@ double White(const LevelSeries& series) {
   return white;
 }
 
-double RelativeFloor(const LevelSeries& series) { return kRelativeFloor * White(series); }
-
 double RootWeight(const LevelReading& reading, Weighting weighting, double floor) {
   if (weighting == Weighting::kMeasuredSigma) return 1 / reading.luminance_sigma;
   if (weighting == Weighting::kRelative) return 1 / std::max(reading.luminance, floor);
@@ -134,6 +132,8 @@ void ListLevels(const LevelSeries& series, ActivationFit& fit) {
 }
 
 }  // namespace
+
+double RelativeFloor(const LevelSeries& series) { return kRelativeFloor * White(series); }
 
 std::string_view NameOf(ActivationModel model) {
   switch (model) {

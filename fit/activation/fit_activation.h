@@ -75,6 +75,12 @@ absl::StatusOr<ActivationFit> FitActivation(const LevelSeries& series, Activatio
 // of a prediction, without the noise of a new reading. Finite for every drive.
 double LuminanceSigma(const ActivationFit& fit, double drive);
 
+// The leave-one-out error that the scatter of the readings alone would leave, were the model exact:
+// their stated sigmas, else that of the residuals about the fit (sqrt(chi_square /
+// degrees_of_freedom)). Beside leave_one_out_rms_relative it says how much of that error a better
+// model could take away. To first order; 0 for kUnweighted, whose weights tell no scatter.
+double LeftOutByScatter(const ActivationFit& fit);
+
 struct ActivationChoice {
   ActivationFit best;
   std::vector<ActivationFit> tried;  // all models, the best one included

@@ -46,8 +46,11 @@ absl::StatusOr<FieldMaps> FitField(const FieldTablesRequest& request, const Watc
   EYEBOX_ASSIGN_OR_RETURN(const MeasuredLevels levels,
                           ReduceGreyLevels(*reader, series, calibration, watcher.Part(0.4, 0.9)));
   EYEBOX_ASSIGN_OR_RETURN(const fit::CommonExponentFit fit, fit::FitCommonExponent(levels.Field()));
-  FieldMaps maps{
-      levels.size, fit.gain, fit.offset, fit.offset_sigma, {static_cast<float>(fit.gamma)}};
+  FieldMaps maps{levels.size,
+                 {fit.gain.begin(), fit.gain.end()},
+                 {fit.offset.begin(), fit.offset.end()},
+                 {fit.offset_sigma.begin(), fit.offset_sigma.end()},
+                 {static_cast<float>(fit.gamma)}};
   if (const auto& geometry = reader->Header().geometry) {
     maps.focal_length_px = geometry->focal_length_px;
     maps.centre_x_px = geometry->principal_x_px;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "capture/base/parallel.h"
 #include "capture/base/status.h"
 #include "fit/base/activation.h"
 #include "fit/base/relative_floor.h"
@@ -94,14 +95,23 @@ SquaredResiduals FitLines(const FieldStack& stack, const LineSolver& solver,
                           CommonExponentFit& fit) {
   const size_t locations = stack.LocationCount();
   Resize((locations + kBlockLocations - 1) / kBlockLocations * kBlockLocations, fit);
+  std::vector<SquaredResiduals> pieces(static_cast<size_t>(PieceCount(stack)));
+  ForEachInParallel(PieceCount(stack), [&](int i) {
+    StackBlocks blocks(stack, i);
+    SquaredResiduals squared;  // of its own: neighbours in `pieces` share a cache line
+    while (blocks.Next()) {
+      const size_t begin = blocks.begin();
+      BestKernels().fit_lines(blocks.values(), solver,
+                              {fit.gain.data() + begin, fit.gain_sigma.data() + begin,
+                               fit.offset.data() + begin, fit.offset_sigma.data() + begin},
+                              squared);
+    }
+    pieces[i] = squared;
+  });
   SquaredResiduals squared;
-  StackBlocks blocks(stack);
-  while (blocks.Next()) {
-    const size_t begin = blocks.begin();
-    BestKernels().fit_lines(blocks.values(), solver,
-                            {fit.gain.data() + begin, fit.gain_sigma.data() + begin,
-                             fit.offset.data() + begin, fit.offset_sigma.data() + begin},
-                            squared);
+  for (const SquaredResiduals& piece : pieces) {
+    squared.weighted += piece.weighted;
+    squared.relative += piece.relative;
   }
   Resize(locations, fit);
   constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "capture/base/uninitialised.h"
 
 namespace eyebox::fit {
 
@@ -35,13 +36,13 @@ struct CommonExponentOptions {
 
 struct CommonExponentFit {
   double gamma = 0;
-  double gamma_sigma = 0;   // from the curvature and the residuals of all locations
-  std::vector<float> gain;  // k, [locations], NaN where not valid
+  double gamma_sigma = 0;           // from the curvature and the residuals of all locations
+  UninitialisedVector<float> gain;  // k, [locations], NaN where not valid
   // From the location's own residuals, whose noise may be another than its neighbours', and gamma's
   // share.
-  std::vector<float> gain_sigma;
-  std::vector<float> offset;  // delta, likewise
-  std::vector<float> offset_sigma;
+  UninitialisedVector<float> gain_sigma;
+  UninitialisedVector<float> offset;  // delta, likewise
+  UninitialisedVector<float> offset_sigma;
   size_t locations = 0;           // that took part
   double degrees_of_freedom = 0;  // locations (levels - 2) - 1
   double weighted_sum_of_squares = 0;

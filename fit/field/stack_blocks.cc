@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "capture/base/parallel.h"
+
 namespace eyebox::fit {
 namespace {
 
@@ -30,17 +32,48 @@ size_t CountValid(const FieldStack& stack) {
   return count;
 }
 
+// As the kernels sum them up, see Moments.
+struct PieceMoments {
+  explicit PieceMoments(int tiles)
+      : sums(static_cast<size_t>(tiles * kLevelTile * kLanes)),
+        products(static_cast<size_t>(tiles * (tiles + 1) / 2 * kTileSize)) {}
+
+  void Measure(const FieldStack& stack, int piece) {
+    StackBlocks blocks(stack, piece);
+    while (blocks.Next()) {
+      all_finite &= blocks.all_finite();
+      BestKernels().accumulate(blocks.values(), blocks.padded_levels(),
+                               {sums.data(), products.data()});
+    }
+  }
+  void Add(const PieceMoments& piece) {
+    all_finite &= piece.all_finite;
+    for (size_t i = 0; i < sums.size(); ++i) sums[i] += piece.sums[i];
+    for (size_t i = 0; i < products.size(); ++i) products[i] += piece.products[i];
+  }
+
+  bool all_finite = true;
+  std::vector<double> sums;
+  std::vector<double> products;
+};
+
 }  // namespace
 
-StackBlocks::StackBlocks(const FieldStack& stack)
+int PieceCount(const FieldStack& stack) {
+  return static_cast<int>((stack.LocationCount() + kPieceLocations - 1) / kPieceLocations);
+}
+
+StackBlocks::StackBlocks(const FieldStack& stack, int piece)
     : stack_(stack),
       levels_(static_cast<int>(stack.drives.size())),
       padded_levels_(PaddedLevels(levels_)),
-      block_(static_cast<size_t>(padded_levels_) * kBlockLocations / kLanes) {}
+      block_(static_cast<size_t>(padded_levels_) * kBlockLocations / kLanes),
+      begin_(static_cast<size_t>(piece) * kPieceLocations),
+      end_(std::min(begin_ + kPieceLocations, stack.LocationCount())) {}
 
 bool StackBlocks::Next() {
   begin_ += count_;
-  count_ = std::min<size_t>(kBlockLocations, stack_.LocationCount() - begin_);
+  count_ = std::min<size_t>(kBlockLocations, end_ - begin_);
   if (count_ == 0) return false;
   const FloatBlock source = count_ == kBlockLocations ? Source() : CopyOfTail();
   all_finite_ = BestKernels().load(source, levels_, block_.front().values);
@@ -66,23 +99,21 @@ FloatBlock StackBlocks::CopyOfTail() {
 }
 
 StackMoments MeasureMoments(const FieldStack& stack) {
-  StackBlocks blocks(stack);
-  const int tiles = blocks.padded_levels() / kLevelTile;
-  std::vector<double> sums(static_cast<size_t>(blocks.padded_levels()) * kLanes);
-  std::vector<double> products(static_cast<size_t>(tiles * (tiles + 1) / 2) * kTileSize);
-  StackMoments moments;
-  while (blocks.Next()) {
-    moments.all_finite &= blocks.all_finite();
-    BestKernels().accumulate(blocks.values(), blocks.padded_levels(),
-                             {sums.data(), products.data()});
-  }
-  moments.locations = CountValid(stack);
   const auto levels = static_cast<int>(stack.drives.size());
+  const int tiles = PaddedLevels(levels) / kLevelTile;
+  std::vector<PieceMoments> pieces(static_cast<size_t>(PieceCount(stack)), PieceMoments(tiles));
+  ForEachInParallel(PieceCount(stack), [&](int i) { pieces[i].Measure(stack, i); });
+  PieceMoments total(tiles);
+  for (const PieceMoments& piece : pieces) total.Add(piece);
+  StackMoments moments;
+  moments.all_finite = total.all_finite;
+  moments.locations = CountValid(stack);
   for (int a = 0; a < levels; ++a) {
-    moments.means.push_back(SumOfLanes(&sums[a * kLanes]) / static_cast<double>(moments.locations));
+    moments.means.push_back(SumOfLanes(&total.sums[a * kLanes]) /
+                            static_cast<double>(moments.locations));
     for (int b = 0; b < levels; ++b) {
       moments.products.push_back(
-          SumOfLanes(&products[PlaceOfProduct(std::min(a, b), std::max(a, b), tiles)]));
+          SumOfLanes(&total.products[PlaceOfProduct(std::min(a, b), std::max(a, b), tiles)]));
     }
   }
   return moments;

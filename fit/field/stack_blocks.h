@@ -16,12 +16,18 @@ struct alignas(kLanes * sizeof(double)) Lanes {
   double values[kLanes] = {};
 };
 
-// One pass over the stack; the stack must outlive it.
+// Large stacks are worked on in pieces of so many locations, on all processors. What the pieces
+// give is added in their order, so that results depend neither on timing nor on the number of
+// processors.
+constexpr size_t kPieceLocations = 512 * kBlockLocations;
+int PieceCount(const FieldStack& stack);
+
+// One pass over a piece of the stack; the stack must outlive it.
 class StackBlocks {
  public:
-  explicit StackBlocks(const FieldStack& stack);
+  StackBlocks(const FieldStack& stack, int piece);
 
-  // Loads the next block; false at the end of the stack.
+  // Loads the next block; false at the end of the piece.
   bool Next();
 
   size_t begin() const { return begin_; }          // its first location
@@ -43,6 +49,7 @@ class StackBlocks {
   std::vector<float> tail_;
   std::vector<uint8_t> tail_valid_;
   size_t begin_ = 0;
+  size_t end_ = 0;
   size_t count_ = 0;
   bool all_finite_ = true;
 };

@@ -5,7 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
+
+#include "capture/base/large_memory.h"
 
 namespace eyebox {
 
@@ -21,6 +22,13 @@ class Image {
  public:
   Image() = default;
   explicit Image(ImageSize size, T fill = T{}) : size_(size), pixels_(size.PixelCount(), fill) {}
+  // Each pixel must be written before it is read.
+  static Image Unwritten(ImageSize size) {
+    Image image;
+    image.size_ = size;
+    image.pixels_.resize(size.PixelCount());
+    return image;
+  }
 
   ImageSize size() const { return size_; }
   bool empty() const { return pixels_.empty(); }
@@ -35,7 +43,7 @@ class Image {
   size_t Offset(int x, int y) const { return static_cast<size_t>(y) * size_.width_px + x; }
 
   ImageSize size_;
-  std::vector<T> pixels_;
+  UninitialisedVector<T> pixels_;
 };
 
 // Borrowed raw counts of one frame, DN, [height, width]. Valid while its owner lives.

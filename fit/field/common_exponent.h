@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "capture/base/uninitialised.h"
+#include "capture/base/large_memory.h"
 
 namespace eyebox::fit {
 

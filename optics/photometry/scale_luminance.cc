@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "capture/base/parallel.h"
 #include "capture/base/status.h"
 
 namespace eyebox::optics {
@@ -35,8 +36,12 @@ absl::StatusOr<LuminanceImage> ScaleLuminance(MeasuredImage image, bool flat_cor
   EYEBOX_RETURN_IF_ERROR(CheckLuminance(*per_unit));
   const auto scale = static_cast<float>(per_unit->luminance_cd_m2);
   const float scale_squared = scale * scale;
-  for (float& value : luminance.image.value.pixels()) value *= scale;
-  for (float& variance : luminance.image.variance.pixels()) variance *= scale_squared;
+  const auto value = luminance.image.value.pixels();
+  const auto variance = luminance.image.variance.pixels();
+  ForEachPieceInParallel(value.size(), [&](size_t first, size_t end) {
+    for (size_t i = first; i < end; ++i) value[i] *= scale;
+    for (size_t i = first; i < end; ++i) variance[i] *= scale_squared;
+  });
   luminance.image.unit = "cd/m2";
   luminance.image.history.push_back(absl::StrCat("ScaleLuminance(", per_unit->luminance_cd_m2,
                                                  " cd/m2 per unit, relative sigma ",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <vector>
+#include "capture/base/vectorise.h"
 
 namespace eyebox::optics {
 namespace {
@@ -13,6 +14,7 @@ struct RowSums {
   std::vector<float> count;
 };
 
+EYEBOX_VECTORISE
 void SumAlongRow(std::span<const float> row, int radius, int step_px, std::vector<float>& padded,
                  std::vector<float>& padded_count, RowSums& sums) {
   const size_t width = row.size();
@@ -34,6 +36,24 @@ void SumAlongRow(std::span<const float> row, int radius, int step_px, std::vecto
   }
 }
 
+EYEBOX_VECTORISE
+void AddRow(const RowSums& row, RowSums& window) {
+  float* const total = window.sum.data();
+  float* const number = window.count.data();
+  const float* const sum = row.sum.data();
+  const float* const count = row.count.data();
+  const size_t width = row.sum.size();
+  for (size_t x = 0; x < width; ++x) {
+    total[x] += sum[x];
+    number[x] += count[x];
+  }
+}
+
+EYEBOX_VECTORISE
+void DivideBySums(const RowSums& window, std::span<float> mean) {
+  for (size_t x = 0; x < mean.size(); ++x) mean[x] = window.sum[x] / window.count[x];
+}
+
 }  // namespace
 
 Image<float> BoxMean(const Image<float>& image, int radius, int step_px) {
@@ -43,27 +63,21 @@ Image<float> BoxMean(const Image<float>& image, int radius, int step_px) {
   std::vector<RowSums> ring(ring_size, {std::vector<float>(width), std::vector<float>(width)});
   std::vector<float> padded(width + 2 * static_cast<size_t>(reach));
   std::vector<float> padded_count(padded.size());
-  Image<float> mean(image.size());
-  std::vector<float> total(width);
-  std::vector<float> number(width);
+  Image<float> mean = Image<float>::Unwritten(image.size());
+  RowSums window{std::vector<float>(width), std::vector<float>(width)};
   int next_row = 0;
   for (int y = 0; y < height; ++y) {
     for (; next_row <= std::min(height - 1, y + reach); ++next_row) {
       SumAlongRow(image.row(next_row), radius, step_px, padded, padded_count,
                   ring[next_row % ring_size]);
     }
-    std::fill(total.begin(), total.end(), 0.0F);
-    std::fill(number.begin(), number.end(), 0.0F);
+    std::fill(window.sum.begin(), window.sum.end(), 0.0F);
+    std::fill(window.count.begin(), window.count.end(), 0.0F);
     for (int row = y - reach; row <= y + reach; row += step_px) {
       if (row < 0 || row >= height) continue;
-      const RowSums& sums = ring[row % ring_size];
-      for (int x = 0; x < width; ++x) {
-        total[x] += sums.sum[x];
-        number[x] += sums.count[x];
-      }
+      AddRow(ring[row % ring_size], window);
     }
-    const auto out = mean.row(y);
-    for (int x = 0; x < width; ++x) out[x] = total[x] / number[x];
+    DivideBySums(window, mean.row(y));
   }
   return mean;
 }

@@ -3,7 +3,9 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "capture/base/parallel.h"
 #include "capture/base/status.h"
+#include "capture/base/vectorise.h"
 #include "optics/sensor/median.h"
 
 namespace eyebox::optics {
@@ -22,6 +24,25 @@ double MedianOfValid(const MeasuredImage& image) {
   return Median(std::move(sample));
 }
 
+EYEBOX_VECTORISE
+void DividePixels(size_t first, size_t end, const MeasuredImage& response, float lowest,
+                  MeasuredImage& image) {
+  float* const value = image.value.pixels().data();
+  float* const variance = image.variance.pixels().data();
+  uint8_t* const mask = image.mask.pixels().data();
+  const float* const flat = response.value.pixels().data();
+  const float* const flat_variance = response.variance.pixels().data();
+  for (size_t i = first; i < end; ++i) {
+    const float per_flat = 1.0F / flat[i];
+    const float ratio = value[i] * per_flat;
+    value[i] = ratio;
+    variance[i] = (variance[i] + ratio * ratio * flat_variance[i]) * per_flat * per_flat;
+    // NaN compares false, so that a masked flat is unusable too.
+    const bool usable = (flat[i] >= lowest) & (flat[i] * flat[i] > 25.0F * flat_variance[i]);
+    mask[i] = static_cast<uint8_t>(mask[i] | (usable ? 0 : kNoFlat));
+  }
+}
+
 }  // namespace
 
 absl::StatusOr<MeasuredImage> DivideByFlat(MeasuredImage image, const MeasuredImage& response,
@@ -35,22 +56,10 @@ absl::StatusOr<MeasuredImage> DivideByFlat(MeasuredImage image, const MeasuredIm
     return Rejected("flat", "it has no light in it", "record a uniform source, well exposed");
   }
   const auto lowest = static_cast<float>(minimum * median);
-  float* const value = image.value.pixels().data();
-  float* const variance = image.variance.pixels().data();
-  uint8_t* const mask = image.mask.pixels().data();
-  const float* const flat = response.value.pixels().data();
-  const float* const flat_variance = response.variance.pixels().data();
-  const size_t count = image.mask.pixels().size();
-  for (size_t i = 0; i < count; ++i) {
-    const float per_flat = 1.0F / flat[i];
-    const float ratio = value[i] * per_flat;
-    value[i] = ratio;
-    variance[i] = (variance[i] + ratio * ratio * flat_variance[i]) * per_flat * per_flat;
-    // NaN compares false, so that a masked flat is unusable too.
-    const bool usable = (flat[i] >= lowest) & (flat[i] * flat[i] > 25.0F * flat_variance[i]);
-    mask[i] = static_cast<uint8_t>(mask[i] | (usable ? 0 : kNoFlat));
-  }
-  BlankMaskedPixels(image);
+  ForEachPieceInParallel(image.mask.pixels().size(), [&](size_t first, size_t end) {
+    DividePixels(first, end, response, lowest, image);
+    BlankMaskedPixels(first, end, image);
+  });
   image.unit = image.unit == response.unit ? "1" : absl::StrCat(image.unit, " / ", response.unit);
   image.history.push_back(absl::StrCat("DivideByFlat(median ", median, ", minimum ", minimum, ")"));
   return image;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "capture/base/vectorise.h"
 #include "optics/reduce/box_mean.h"
 #include "optics/reduce/measured_image.h"
 
@@ -24,6 +25,7 @@ struct RowPool {
   std::vector<float> noise_dn2;  // of counts_dn, without the light's shot noise
 };
 
+EYEBOX_VECTORISE
 void AddExposure(const Exposure& exposure, std::span<const uint8_t> defective, int y,
                  const NoiseModel& noise, RowPool& pool) {
   const auto light = exposure.light->mean_dn.row(y);
@@ -34,13 +36,52 @@ void AddExposure(const Exposure& exposure, std::span<const uint8_t> defective, i
   const auto frames = static_cast<float>(exposure.light->frames);
   const float time_s = frames * static_cast<float>(exposure.light->setting.exposure_s);
   const auto light_noise = frames * static_cast<float>(noise.MeanVariance(0, 1));
+  float* const counts_dn = pool.counts_dn.data();
+  float* const times_s = pool.time_s.data();
+  float* const noise_dn2 = pool.noise_dn2.data();
   for (size_t x = 0; x < light.size(); ++x) {
     const bool usable = (saturation[x] | dark_mask[x] | defective[x]) == 0;
     const float counts = frames * (light[x] - dark[x]);
     const float variance = light_noise + frames * frames * dark_variance[x];
-    pool.counts_dn[x] += usable ? counts : 0.0F;
-    pool.time_s[x] += usable ? time_s : 0.0F;
-    pool.noise_dn2[x] += usable ? variance : 0.0F;
+    counts_dn[x] += usable ? counts : 0.0F;
+    times_s[x] += usable ? time_s : 0.0F;
+    noise_dn2[x] += usable ? variance : 0.0F;
+  }
+}
+
+EYEBOX_VECTORISE
+void Divide(const RowPool& pool, float gain, int row, PooledRate& pooled) {
+  float* const rate = pooled.rate_dn_s.row(row).data();
+  float* const dark_variance = pooled.dark_variance.row(row).data();
+  float* const shot_variance = pooled.shot_variance.row(row).data();
+  const float* const time_s = pool.time_s.data();
+  const float* const counts_dn = pool.counts_dn.data();
+  const float* const noise_dn2 = pool.noise_dn2.data();
+  const size_t width = pool.time_s.size();
+  for (size_t x = 0; x < width; ++x) {
+    const float per_s = 1.0F / time_s[x];
+    rate[x] = time_s[x] > 0 ? counts_dn[x] * per_s : kNoValue;
+    dark_variance[x] = noise_dn2[x] * per_s * per_s;
+    shot_variance[x] = gain * per_s;
+  }
+}
+
+// The mean of the neighbours, but for an edge: there the pixel itself. Into pooled.rate_dn_s.
+EYEBOX_VECTORISE
+void SmoothButForEdges(const Image<float>& smooth, float edge, PooledRate& pooled) {
+  float* const rate = pooled.rate_dn_s.pixels().data();
+  const float* const dark_variance = pooled.dark_variance.pixels().data();
+  const float* const shot_variance = pooled.shot_variance.pixels().data();
+  const float* const mean = smooth.pixels().data();
+  const size_t count = smooth.pixels().size();
+  for (size_t i = 0; i < count; ++i) {
+    const float departure = rate[i] - mean[i];
+    // At the higher of the two: a count that came out low must not make its own noise look small,
+    // or it passes for an edge.
+    const float higher = std::max(std::max(rate[i], mean[i]), 0.0F);
+    const float variance = dark_variance[i] + shot_variance[i] * higher;
+    // False for NaN, which then stays NaN.
+    rate[i] = departure * departure <= edge * variance ? mean[i] : rate[i];
   }
 }
 
@@ -48,21 +89,14 @@ PooledRate PoolExposures(std::span<const Exposure> exposures, const Calibration&
                          Rows rows) {
   const ImageSize size{exposures[0].light->size().width_px, rows.count()};
   const auto gain = static_cast<float>(calibration.noise.gain_dn_per_e);
-  PooledRate pooled{Image<float>(size), Image<float>(size), Image<float>(size)};
+  PooledRate pooled{Image<float>::Unwritten(size), Image<float>::Unwritten(size),
+                    Image<float>::Unwritten(size)};
   for (int y = rows.first; y < rows.end; ++y) {
     RowPool pool(size.width_px);
     for (const Exposure& exposure : exposures) {
       AddExposure(exposure, calibration.defects.defective.row(y), y, calibration.noise, pool);
     }
-    const auto rate = pooled.rate_dn_s.row(y - rows.first);
-    const auto dark_variance = pooled.dark_variance.row(y - rows.first);
-    const auto shot_variance = pooled.shot_variance.row(y - rows.first);
-    for (int x = 0; x < size.width_px; ++x) {
-      const float per_s = 1.0F / pool.time_s[x];
-      rate[x] = pool.time_s[x] > 0 ? pool.counts_dn[x] * per_s : kNoValue;
-      dark_variance[x] = pool.noise_dn2[x] * per_s * per_s;
-      shot_variance[x] = gain * per_s;
-    }
+    Divide(pool, gain, y - rows.first, pooled);
   }
   return pooled;
 }
@@ -82,19 +116,7 @@ Image<float> ExpectedRate(std::span<const Exposure> exposures, const Calibration
   const Image<float> smooth =
       BoxMean(pooled.rate_dn_s, options.smoothing_radius, options.colour_period_px);
   const auto edge = static_cast<float>(options.edge_sigmas * options.edge_sigmas);
-  const auto rate = pooled.rate_dn_s.pixels();
-  const auto dark_variance = pooled.dark_variance.pixels();
-  const auto shot_variance = pooled.shot_variance.pixels();
-  const auto mean = smooth.pixels();
-  for (size_t i = 0; i < rate.size(); ++i) {
-    const float departure = rate[i] - mean[i];
-    // At the higher of the two: a count that came out low must not make its own noise look small,
-    // or it passes for an edge.
-    const float higher = std::max(std::max(rate[i], mean[i]), 0.0F);
-    const float variance = dark_variance[i] + shot_variance[i] * higher;
-    // False for NaN, which then stays NaN.
-    rate[i] = departure * departure <= edge * variance ? mean[i] : rate[i];
-  }
+  SmoothButForEdges(smooth, edge, pooled);
   if (seen.count() == rows.count()) return std::move(pooled.rate_dn_s);
   return CropRows(pooled.rate_dn_s, {rows.first - seen.first, rows.end - seen.first});
 }

@@ -7,14 +7,14 @@
 #include "absl/strings/str_cat.h"
 #include "capture/base/parallel.h"
 #include "capture/base/status.h"
+#include "capture/base/vectorise.h"
 
 namespace eyebox::optics {
 namespace {
 
 constexpr int kMaximumFrames = 65536;
 constexpr int kSumBits = 16;
-// One thread's share of a frame, and what it adds before it goes on: near enough to be read twice.
-constexpr size_t kPieceOfFrame = 1 << 19;
+// What a thread adds before it goes on: near enough to be read twice.
 constexpr size_t kPieceInCache = 1 << 12;
 
 // What the counts of some pixels have in common.
@@ -23,6 +23,7 @@ struct Counts {
   bool saturated = false;  // any
 };
 
+EYEBOX_VECTORISE
 Counts LookAt(std::span<const uint16_t> pixels_dn, uint16_t saturation) {
   Counts counts;
   uint16_t reached = 0;
@@ -34,11 +35,17 @@ Counts LookAt(std::span<const uint16_t> pixels_dn, uint16_t saturation) {
   return counts;
 }
 
+// The first of a sum is written, not added: the sum need not be cleared before.
 template <typename Sum>
-void AddTo(std::span<const uint16_t> dn, std::span<Sum> sum) {
+void AddTo(std::span<const uint16_t> dn, bool is_first, std::span<Sum> sum) {
+  if (is_first) {
+    std::copy(dn.begin(), dn.end(), sum.begin());
+    return;
+  }
   for (size_t i = 0; i < dn.size(); ++i) sum[i] = static_cast<Sum>(sum[i] + dn[i]);
 }
 
+EYEBOX_VECTORISE
 void CountSaturated(std::span<const uint16_t> dn, uint16_t saturation, std::span<uint8_t> count) {
   for (size_t i = 0; i < dn.size(); ++i) {
     const uint8_t more = static_cast<uint8_t>((dn[i] >= saturation) & (count[i] != 255));
@@ -47,6 +54,7 @@ void CountSaturated(std::span<const uint16_t> dn, uint16_t saturation, std::span
 }
 
 // Sorts each count in among the two highest and the two lowest. `first`: of the extremes' pixels.
+EYEBOX_VECTORISE
 void SortIn(std::span<const uint16_t> dn, size_t first, Extremes& extremes) {
   uint16_t* const highest = extremes.highest.pixels().data() + first;
   uint16_t* const second_highest = extremes.second_highest.pixels().data() + first;
@@ -58,18 +66,6 @@ void SortIn(std::span<const uint16_t> dn, size_t first, Extremes& extremes) {
     second_lowest[i] = std::min(second_lowest[i], std::max(lowest[i], dn[i]));
     lowest[i] = std::min(lowest[i], dn[i]);
   }
-}
-
-int PiecesOf(size_t pixels) {
-  return static_cast<int>((pixels + kPieceOfFrame - 1) / kPieceOfFrame);
-}
-
-template <typename Work>
-void ForEachPiece(size_t pixels, const Work& work) {
-  ForEachInParallel(PiecesOf(pixels), [&](int piece) {
-    const size_t first = piece * kPieceOfFrame;
-    work(first, std::min(first + kPieceOfFrame, pixels));
-  });
 }
 
 }  // namespace
@@ -90,11 +86,11 @@ absl::Status FrameStacker::Add(const FrameView& frame) {
   if (count == 0 || frame.pixels_dn.size() != count) {
     return BadInput(where, "it has no pixels, or not as many as its size says", "re-read it");
   }
-  if (frames_ > 0 && frame.size != sum_dn_.size()) {
+  if (frames_ > 0 && frame.size != partial_dn_.size()) {
     return BadInput(where,
                     absl::StrCat("it is ", frame.size.width_px, " x ", frame.size.height_px,
-                                 " pixels, the frames before it ", sum_dn_.size().width_px, " x ",
-                                 sum_dn_.size().height_px),
+                                 " pixels, the frames before it ", partial_dn_.size().width_px,
+                                 " x ", partial_dn_.size().height_px),
                     "stack frames of one size");
   }
   if (frames_ >= kMaximumFrames) {
@@ -116,8 +112,7 @@ absl::Status FrameStacker::Add(const FrameView& frame) {
 int FrameStacker::PartialCapacity() const { return 1 << (kSumBits - range_.bits); }
 
 void FrameStacker::Begin(ImageSize size) {
-  partial_dn_ = Image<uint16_t>(size);
-  sum_dn_ = Image<uint32_t>(size);
+  partial_dn_ = Image<uint16_t>::Unwritten(size);
   saturated_count_ = Image<uint8_t>(size);
   partial_frames_ = 0;
   if (!keep_extremes_) return;
@@ -128,15 +123,15 @@ void FrameStacker::Begin(ImageSize size) {
 
 uint16_t FrameStacker::AddPieces(std::span<const uint16_t> pixels_dn) {
   const auto saturation = static_cast<uint16_t>(range_.SaturationDn());
-  std::vector<uint16_t> bits(PiecesOf(pixels_dn.size()));
-  ForEachPiece(pixels_dn.size(), [&](size_t first, size_t end) {
-    uint16_t& in_use = bits[first / kPieceOfFrame];
+  std::vector<uint16_t> bits(ParallelPieces(pixels_dn.size()));
+  ForEachPieceInParallel(pixels_dn.size(), [&](size_t first, size_t end) {
+    uint16_t& in_use = bits[first / kParallelPiece];
     for (size_t begin = first; begin < end; begin += kPieceInCache) {
       const size_t count = std::min(kPieceInCache, end - begin);
       const auto dn = pixels_dn.subspan(begin, count);
       const Counts counts = LookAt(dn, saturation);
       in_use = static_cast<uint16_t>(in_use | counts.bits);
-      AddTo(dn, partial_dn_.pixels().subspan(begin, count));
+      AddTo(dn, partial_frames_ == 0, partial_dn_.pixels().subspan(begin, count));
       if (extremes_) SortIn(dn, begin, *extremes_);
       if (!counts.saturated) continue;
       CountSaturated(dn, saturation, saturated_count_.pixels().subspan(begin, count));
@@ -148,10 +143,11 @@ uint16_t FrameStacker::AddPieces(std::span<const uint16_t> pixels_dn) {
 }
 
 void FrameStacker::FlushPartial() {
-  ForEachPiece(sum_dn_.pixels().size(), [&](size_t first, size_t end) {
-    const auto partial = partial_dn_.pixels().subspan(first, end - first);
-    AddTo<uint32_t>(partial, sum_dn_.pixels().subspan(first, end - first));
-    std::fill(partial.begin(), partial.end(), uint16_t{0});
+  const bool is_first = sum_dn_.empty();
+  if (is_first) sum_dn_ = Image<uint32_t>::Unwritten(partial_dn_.size());
+  ForEachPieceInParallel(sum_dn_.pixels().size(), [&](size_t first, size_t end) {
+    AddTo<uint32_t>(partial_dn_.pixels().subspan(first, end - first), is_first,
+                    sum_dn_.pixels().subspan(first, end - first));
   });
   partial_frames_ = 0;
 }
@@ -161,12 +157,17 @@ absl::StatusOr<Stack> FrameStacker::Finish() {
     return Rejected(Describe(setting_), "no frame was recorded with this setting",
                     "record at least one");
   }
-  Stack stack{setting_, range_, frames_, Image<float>(sum_dn_.size()), std::move(saturated_count_)};
+  Stack stack{setting_, range_, frames_, Image<float>::Unwritten(partial_dn_.size()),
+              std::move(saturated_count_)};
   const double per_frame = 1.0 / frames_;
-  ForEachPiece(sum_dn_.pixels().size(), [&](size_t first, size_t end) {
-    const uint32_t* const sum = sum_dn_.pixels().data();
+  ForEachPieceInParallel(partial_dn_.pixels().size(), [&](size_t first, size_t end) {
     const uint16_t* const partial = partial_dn_.pixels().data();
     float* const mean = stack.mean_dn.pixels().data();
+    if (sum_dn_.empty()) {
+      for (size_t i = first; i < end; ++i) mean[i] = static_cast<float>(partial[i] * per_frame);
+      return;
+    }
+    const uint32_t* const sum = sum_dn_.pixels().data();
     for (size_t i = first; i < end; ++i) {
       mean[i] = static_cast<float>((sum[i] + partial[i]) * per_frame);
     }

@@ -48,8 +48,8 @@ struct Stack {
   ImageSize size() const { return mean_dn.size(); }
 };
 
-// Not thread-safe; adds a large frame on all processors. Memory: seven bytes a pixel, whatever the
-// number of frames.
+// Not thread-safe; adds a large frame on all processors. Memory: three bytes a pixel, seven from
+// the frame on that 16 bits cannot hold the sum of (the 17th of 12 bits), whatever their number.
 class FrameStacker {
  public:
   // keep_extremes: for ClipStack, eight bytes a pixel more.
@@ -79,7 +79,7 @@ class FrameStacker {
   bool keep_extremes_ = false;
   int frames_ = 0;
   // Sums are exact. Frames go into 16 bits as long as those hold them, which takes half the way to
-  // memory and back, then into 32 bits, which hold 65536 frames of 16 bits.
+  // memory and back, then into 32 bits, which hold 65536 frames of 16 bits; no pixels until then.
   Image<uint16_t> partial_dn_;
   int partial_frames_ = 0;
   Image<uint32_t> sum_dn_;

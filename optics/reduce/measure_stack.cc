@@ -1,8 +1,10 @@
 #include "optics/reduce/measure_stack.h"
 
+#include <algorithm>
 #include <span>
 
 #include "absl/strings/str_cat.h"
+#include "capture/base/vectorise.h"
 
 namespace eyebox::optics {
 namespace {
@@ -54,13 +56,43 @@ struct Rails {
   }
 };
 
+struct RowInput {
+  std::span<const float> expected_dn_s;
+  std::span<const float> dark_dn;
+  std::span<const uint8_t> saturation;
+  std::span<const uint8_t> defective;
+};
+
+EYEBOX_VECTORISE
+void MeasureRow(const RowInput& row, const NoiseF& model, const Rails& rails, float exposure_s,
+                std::span<float> variance, std::span<uint8_t> mask) {
+  const NoiseF noise = model;  // copies: what is written cannot be them
+  const Rails limits = rails;
+  const float* const expected = row.expected_dn_s.data();
+  const float* const dark_dn = row.dark_dn.data();
+  const uint8_t* const saturation = row.saturation.data();
+  const uint8_t* const defective = row.defective.data();
+  float* const variances = variance.data();
+  uint8_t* const flags = mask.data();
+  const size_t width = variance.size();
+  for (size_t x = 0; x < width; ++x) {
+    const float expected_dn = expected[x] * exposure_s + dark_dn[x];
+    const float frame_noise = noise.FrameNoise(expected_dn - noise.bias_dn);
+    // Saturation already implies a count next to the upper rail: no second reason is needed.
+    const uint8_t railed = limits.Flags(expected_dn, frame_noise + noise.quantisation);
+    const uint8_t reasons = saturation[x] != 0 ? saturation[x] : railed;
+    variances[x] = noise.MeanVariance(frame_noise);
+    flags[x] = static_cast<uint8_t>(reasons | (defective[x] != 0 ? kDefective : 0));
+  }
+}
+
 }  // namespace
 
 MeasuredImage MeasureStack(const Exposure& exposure, const Image<float>& expected_rate_dn_s,
                            const NoiseModel& noise, const DefectMap& defects,
                            double rail_guard_sigmas) {
   const Stack& light = *exposure.light;
-  MeasuredImage image = MakeMeasuredImage(light.size(), "DN");
+  MeasuredImage image = UnwrittenMeasuredImage(light.size(), "DN");
   const NoiseF model(noise, light.frames);
   const Rails rails{static_cast<float>(light.range.SaturationDn()),
                     static_cast<float>(rail_guard_sigmas * rail_guard_sigmas)};
@@ -71,19 +103,10 @@ MeasuredImage MeasureStack(const Exposure& exposure, const Image<float>& expecte
     const auto expected = expected_rate_dn_s.row(y);
     const auto saturation = exposure.saturation.row(y);
     const auto defective = defects.defective.row(y);
-    const auto value = image.value.row(y);
     const auto variance = image.variance.row(y);
-    const auto mask = image.mask.row(y);
-    for (size_t x = 0; x < value.size(); ++x) {
-      const float expected_dn = expected[x] * exposure_s + dark_dn[x];
-      const float frame_noise = model.FrameNoise(expected_dn - model.bias_dn);
-      // Saturation already implies a count next to the upper rail: no second reason is needed.
-      const uint8_t railed = rails.Flags(expected_dn, frame_noise + model.quantisation);
-      const uint8_t flags = saturation[x] != 0 ? saturation[x] : railed;
-      value[x] = mean_dn[x];
-      variance[x] = model.MeanVariance(frame_noise);
-      mask[x] = static_cast<uint8_t>(flags | (defective[x] != 0 ? kDefective : 0));
-    }
+    std::copy(mean_dn.begin(), mean_dn.end(), image.value.row(y).begin());
+    MeasureRow({expected, dark_dn, saturation, defective}, model, rails, exposure_s, variance,
+               image.mask.row(y));
     AllowForRejected(light, y, model, exposure_s, expected, dark_dn, variance);
   }
   BlankMaskedPixels(image);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <utility>
+#include "capture/base/vectorise.h"
 
 namespace eyebox::optics {
 
@@ -14,12 +15,25 @@ MeasuredImage MakeMeasuredImage(ImageSize size, std::string unit) {
   return image;
 }
 
+MeasuredImage UnwrittenMeasuredImage(ImageSize size, std::string unit) {
+  MeasuredImage image;
+  image.value = Image<float>::Unwritten(size);
+  image.variance = Image<float>::Unwritten(size);
+  image.mask = Image<uint8_t>::Unwritten(size);
+  image.unit = std::move(unit);
+  return image;
+}
+
 void BlankMaskedPixels(MeasuredImage& image) {
+  BlankMaskedPixels(0, image.mask.pixels().size(), image);
+}
+
+EYEBOX_VECTORISE
+void BlankMaskedPixels(size_t first, size_t end, MeasuredImage& image) {
   float* const value = image.value.pixels().data();
   float* const variance = image.variance.pixels().data();
   const uint8_t* const mask = image.mask.pixels().data();
-  const size_t count = image.mask.pixels().size();
-  for (size_t i = 0; i < count; ++i) {
+  for (size_t i = first; i < end; ++i) {
     value[i] = mask[i] != 0 ? kNoValue : value[i];
     variance[i] = mask[i] != 0 ? kNoValue : variance[i];
   }

@@ -89,7 +89,7 @@ absl::StatusOr<ReducedRate> ReduceRate(std::span<const Stack> exposures,
                           OrderBracket(exposures, calibration));
   const ImageSize size = bracket[0].light->size();
   ReducedRate reduced;
-  reduced.rate = MakeMeasuredImage(size, "DN/s");
+  reduced.rate = UnwrittenMeasuredImage(size, "DN/s");
   VarianceBudgetMeter budget(calibration.noise, calibration.linearity, size);
   const std::vector<Rows> bands = BandsOf(size);
   std::vector<absl::StatusOr<BandSums>> sums(bands.size());

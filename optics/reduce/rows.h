@@ -24,7 +24,7 @@ inline Rows AllRows(ImageSize size) { return {0, size.height_px}; }
 template <typename T>
 Image<T> CropRows(const Image<T>& image, Rows rows) {
   const int width = image.size().width_px;
-  Image<T> cropped({width, rows.count()});
+  Image<T> cropped = Image<T>::Unwritten({width, rows.count()});
   const auto source = image.pixels().subspan(static_cast<size_t>(rows.first) * width);
   std::copy_n(source.begin(), cropped.pixels().size(), cropped.pixels().begin());
   return cropped;

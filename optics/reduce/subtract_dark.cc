@@ -2,8 +2,28 @@
 
 #include "absl/strings/str_cat.h"
 #include "capture/base/status.h"
+#include "capture/base/vectorise.h"
 
 namespace eyebox::optics {
+namespace {
+
+EYEBOX_VECTORISE
+void SubtractPixels(const MeasuredImage& dark, MeasuredImage& light) {
+  float* const value = light.value.pixels().data();
+  float* const variance = light.variance.pixels().data();
+  uint8_t* const mask = light.mask.pixels().data();
+  const float* const dark_value = dark.value.pixels().data();
+  const float* const dark_variance = dark.variance.pixels().data();
+  const uint8_t* const dark_mask = dark.mask.pixels().data();
+  const size_t count = light.mask.pixels().size();
+  for (size_t i = 0; i < count; ++i) {
+    value[i] -= dark_value[i];  // NaN where the dark is masked
+    variance[i] += dark_variance[i];
+    mask[i] = static_cast<uint8_t>(mask[i] | dark_mask[i]);
+  }
+}
+
+}  // namespace
 
 absl::StatusOr<MeasuredImage> SubtractDark(MeasuredImage light_dn, const Setting& setting,
                                            const DarkFrame& dark) {
@@ -18,18 +38,7 @@ absl::StatusOr<MeasuredImage> SubtractDark(MeasuredImage light_dn, const Setting
   if (light_dn.unit != "DN") {
     return BadInput(where, absl::StrCat("its unit is ", light_dn.unit), "subtract darks from DN");
   }
-  float* const value = light_dn.value.pixels().data();
-  float* const variance = light_dn.variance.pixels().data();
-  uint8_t* const mask = light_dn.mask.pixels().data();
-  const float* const dark_value = dark.image_dn.value.pixels().data();
-  const float* const dark_variance = dark.image_dn.variance.pixels().data();
-  const uint8_t* const dark_mask = dark.image_dn.mask.pixels().data();
-  const size_t count = light_dn.mask.pixels().size();
-  for (size_t i = 0; i < count; ++i) {
-    value[i] -= dark_value[i];  // NaN where the dark is masked
-    variance[i] += dark_variance[i];
-    mask[i] = static_cast<uint8_t>(mask[i] | dark_mask[i]);
-  }
+  SubtractPixels(dark.image_dn, light_dn);
   for (const std::string& step : dark.image_dn.history) {
     if (step.starts_with("InterpolateDark(")) light_dn.history.push_back(step);
   }

@@ -2,9 +2,9 @@
 
 #include <sys/mman.h>
 
-#include <cstdint>
-#include <cstdlib>
+#include <cstddef>
 #include <mutex>
+#include <new>
 #include <vector>
 
 namespace eyebox {
@@ -22,6 +22,22 @@ constexpr size_t kMostKeptBlocks = 128;
 size_t WholePages(size_t bytes) {
   const size_t page = bytes < kHugeBytes ? kPage : kHugePage;
   return (bytes + page - 1) / page * page;
+}
+
+void* FreshBlock(size_t whole) {
+  if (whole < kHugeBytes) return ::operator new(whole);
+  void* const block = ::operator new(whole, std::align_val_t(kHugePage));
+  // A kernel without huge pages refuses; the memory is as good, only slower.
+  madvise(block, whole, MADV_HUGEPAGE);
+  return block;
+}
+
+void Delete(void* block, size_t whole) {
+  if (whole < kHugeBytes) {
+    ::operator delete(block);
+  } else {
+    ::operator delete(block, std::align_val_t(kHugePage));
+  }
 }
 
 // Blocks that were given back, for others of the same size: the kernel clears fresh pages, which
@@ -45,7 +61,7 @@ class KeptBlocks {
     blocks_.push_back({memory, bytes});
     kept_bytes_ += bytes;
     while (kept_bytes_ > kMostKeptBytes || blocks_.size() > kMostKeptBlocks) {
-      std::free(blocks_.front().memory);
+      Delete(blocks_.front().memory, blocks_.front().bytes);
       kept_bytes_ -= blocks_.front().bytes;
       blocks_.erase(blocks_.begin());
     }
@@ -78,22 +94,19 @@ constexpr bool kKeepsBlocks = true;
 }  // namespace
 
 void* AllocateLarge(size_t bytes) {
-  if (bytes < kLeastKeptBytes) return std::malloc(bytes == 0 ? 1 : bytes);
-  if (bytes > SIZE_MAX - kHugePage) return nullptr;
+  if (bytes < kLeastKeptBytes) return ::operator new(bytes);
   const size_t whole = WholePages(bytes);
-  if (void* const kept = Kept().Take(whole)) return kept;
-  if (bytes < kHugeBytes) return std::malloc(whole);
-  void* const block = std::aligned_alloc(kHugePage, whole);
-  // A kernel without huge pages refuses; the memory is as good, only slower.
-  if (block != nullptr) madvise(block, whole, MADV_HUGEPAGE);
-  return block;
+  void* const kept = Kept().Take(whole);
+  return kept != nullptr ? kept : FreshBlock(whole);
 }
 
 void FreeLarge(void* block, size_t bytes) {
-  if (kKeepsBlocks && bytes >= kLeastKeptBytes) {
+  if (bytes < kLeastKeptBytes) {
+    ::operator delete(block);
+  } else if (kKeepsBlocks) {
     Kept().Keep(block, WholePages(bytes));
   } else {
-    std::free(block);
+    Delete(block, WholePages(bytes));
   }
 }
 

@@ -3,7 +3,6 @@
 #define EYEBOX_CAPTURE_BASE_LARGE_MEMORY_H_
 
 #include <cstddef>
-#include <limits>
 #include <memory>
 #include <new>
 #include <utility>
@@ -28,13 +27,7 @@ struct LargeAllocator {
   template <typename U>
   LargeAllocator(const LargeAllocator<U>& /*other*/) {}  // NOLINT: allocators convert
 
-  T* allocate(size_t count) {
-    void* block = count > std::numeric_limits<size_t>::max() / sizeof(T)
-                      ? nullptr
-                      : AllocateLarge(count * sizeof(T));
-    if (block == nullptr) throw std::bad_alloc();
-    return static_cast<T*>(block);
-  }
+  T* allocate(size_t count) { return static_cast<T*>(AllocateLarge(count * sizeof(T))); }
   void deallocate(T* block, size_t count) { FreeLarge(block, count * sizeof(T)); }
 
   template <typename U>

@@ -32,6 +32,12 @@ elseif(EYEBOX_SANITIZER STREQUAL "thread")
   add_link_options(-fsanitize=thread)
 endif()
 
+if(EYEBOX_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize=vptr
+                      -fno-sanitize-recover=undefined)
+  add_link_options(-fsanitize=address,undefined)
+endif()
+
 # Parsing the standard library and Abseil is half of the time that a source takes, so it is done
 # once. Sources still include what they use: clang-tidy reads them without these headers.
 file(WRITE ${CMAKE_BINARY_DIR}/empty.cc "")

@@ -84,12 +84,20 @@ v1::ManifestCapture ToProto(const ManifestEntry& entry) {
   return proto;
 }
 
+// Divides instead of multiplying: a product of what a hostile manifest states may wrap.
+bool FitsBehind(uint64_t offset_bytes, uint64_t count, uint64_t item_bytes, uint64_t file_bytes) {
+  return offset_bytes <= file_bytes && count <= (file_bytes - offset_bytes) / item_bytes;
+}
+
 bool SizesCanBe(const ManifestEntry& entry) {
-  const uint64_t records_bytes = static_cast<uint64_t>(entry.row_count) * sizeof(FrameRecord);
-  return entry.frame_size.width_px > 0 && entry.frame_size.height_px > 0 && entry.frame_count > 0 &&
-         entry.row_count >= entry.frame_count &&
-         entry.frames_offset_bytes + entry.FramesBytes() <= entry.file_bytes &&
-         entry.records_offset_bytes + records_bytes <= entry.file_bytes &&
+  if (entry.frame_size.width_px <= 0 || entry.frame_size.height_px <= 0 || entry.frame_count <= 0 ||
+      entry.row_count < entry.frame_count) {
+    return false;
+  }
+  const auto rows = static_cast<uint64_t>(entry.row_count);
+  return FitsBehind(entry.frames_offset_bytes, entry.packed ? 0 : rows, entry.FrameBytes(),
+                    entry.file_bytes) &&
+         FitsBehind(entry.records_offset_bytes, rows, sizeof(FrameRecord), entry.file_bytes) &&
          entry.side.CanBe(entry.file_bytes);
 }
 

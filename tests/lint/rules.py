@@ -115,7 +115,7 @@ def include_guards(tree):
 def whitespace(tree):
     """No space at the end of a line, one newline at the end of a file."""
     for path, text in tree.texts.items():
-        if path.startswith("fixtures/"):
+        if path.startswith(("fixtures/", "tests/fuzz/corpus/")):
             continue
         for number, line in enumerate(text.split("\n"), 1):
             if line != line.rstrip():

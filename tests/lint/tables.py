@@ -55,6 +55,7 @@ THIRD_PARTY = [
     Library("CLI11", r"CLI/.*", ("service/cli/*",)),
     Library("printing", r"iostream|print|fmt/.*|spdlog/.*", ("service/*",)),
     Library("OpenSSL", r"openssl/.*", ("service/*.cc",)),
+    Library("prometheus-cpp", r"prometheus/.*", ("service/server/observe/metrics.cc",)),
     Library("GoogleTest", r"g(test|mock)/.*", ()),
     Library("rapidcheck", r"rapidcheck.*", ()),
     Library("Google Benchmark", r"benchmark/.*", ()),

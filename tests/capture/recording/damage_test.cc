@@ -7,6 +7,7 @@
 #include <string>
 
 #include "capture/base/file.h"
+#include "capture/recording/manifest.h"
 #include "capture/recording/pack.h"
 #include "tests/capture/recording/recorded.h"
 
@@ -138,6 +139,26 @@ TEST_P(Damage, OfAFrameKeepsItFromTheVisitor) {
   EXPECT_FALSE(shown.contains(104));
   const char* place = GetParam() ? "000002.h5" : "000002.h5, frame 2";
   EXPECT_THAT(std::string(status.message()), HasSubstr(place));
+}
+
+// Their product is 2^64 and a little: small, if one multiplies.
+TEST(Manifest, SizesWhoseProductWrapsAreRefused) {
+  const TemporaryFolder folder;
+  ManifestEntry entry;
+  entry.number = 1;
+  entry.spec.exposure_s = 0.01;
+  entry.spec.repeats = 1;
+  entry.frame_size = {1 << 30, 1 << 30};
+  entry.frame_count = entry.row_count = 8;
+  entry.file_bytes = 1 << 20;
+  {
+    auto log = ManifestLog::Create(folder / "manifest.log", "header");
+    ASSERT_TRUE(log.ok()) << log.status();
+    ASSERT_TRUE(log->Append(entry).ok());
+  }
+  const auto manifest = ReadManifest(folder / "manifest.log");
+  ASSERT_TRUE(absl::IsDataLoss(manifest.status())) << manifest.status();
+  EXPECT_THAT(std::string(manifest.status().message()), HasSubstr("sizes that cannot be"));
 }
 
 }  // namespace

@@ -14,10 +14,12 @@ from eyebox import _stubs
 
 _stubs.find(__path__)
 
+from eyebox.arrays import Map  # noqa: E402  needs the stubs
+from eyebox.capture import Captured, Session, Stimulus  # noqa: E402
 from eyebox.client import Client, Job, Update, connect  # noqa: E402  needs the stubs
 from eyebox.errors import (AlreadyExists, Cancelled, DataLoss, EyeboxError, InvalidRequest,  # noqa: E402
                            JobFailed, NotFound, QueueFull, Rejected, ServerUnavailable)
 
-__all__ = ["AlreadyExists", "Cancelled", "Client", "DataLoss", "EyeboxError", "InvalidRequest",
-           "Job", "JobFailed", "NotFound", "QueueFull", "Rejected", "ServerUnavailable", "Update",
-           "connect"]
+__all__ = ["AlreadyExists", "Cancelled", "Captured", "Client", "DataLoss", "EyeboxError",
+           "InvalidRequest", "Job", "JobFailed", "Map", "NotFound", "QueueFull", "Rejected",
+           "ServerUnavailable", "Session", "Stimulus", "Update", "connect"]

@@ -12,16 +12,15 @@ import tempfile
 from pathlib import Path
 
 PROTO_FOLDER = Path(__file__).resolve().parents[3] / "proto"
-_PROTOS = ("eyebox/v1/field.proto", "eyebox/v1/recording.proto", "eyebox/v1/results.proto",
-           "eyebox/v1/service.proto", "eyebox/v1/uniformity.proto")
+_NEWEST = "job_service_pb2_grpc.py"  # an older package has the others alone
 
 
 def find(package_path):
     """Makes eyebox.v1 importable: extends the package's __path__ where it is not part of it."""
-    if (Path(package_path[0]) / "v1" / "service_pb2_grpc.py").exists():
+    if (Path(package_path[0]) / "v1" / _NEWEST).exists():
         return
     folder = Path(os.environ["EYEBOX_STUBS"]) if "EYEBOX_STUBS" in os.environ else _cache_folder()
-    if not (folder / "eyebox" / "v1" / "service_pb2_grpc.py").exists():
+    if not (folder / "eyebox" / "v1" / _NEWEST).exists():
         _generate_whole(folder)
     package_path.append(str(folder / "eyebox"))
 
@@ -30,10 +29,14 @@ def generate(protos, folder):
     """Runs protoc; the modules are folder/eyebox/v1/*_pb2.py and *_pb2_grpc.py."""
     folder.mkdir(parents=True, exist_ok=True)
     command = [*_compiler(), f"-I{protos}", f"--python_out={folder}", f"--grpc_python_out={folder}",
-               *_PROTOS]
+               *_protos(protos)]
     run = subprocess.run(command, capture_output=True, text=True, check=False)
     if run.returncode:
         raise RuntimeError(f"{' '.join(command)} failed: {run.stderr.strip()}")
+
+
+def _protos(folder):
+    return sorted(str(file.relative_to(folder)) for file in Path(folder).glob("eyebox/v1/*.proto"))
 
 
 def _compiler():
@@ -46,7 +49,7 @@ def _compiler():
 
 def _cache_folder():
     digest = hashlib.sha256()
-    for proto in _PROTOS:
+    for proto in _protos(PROTO_FOLDER) or ["eyebox/v1/service.proto"]:
         try:
             digest.update((PROTO_FOLDER / proto).read_bytes())
         except OSError as error:
@@ -64,5 +67,5 @@ def _generate_whole(folder):
         try:
             os.rename(Path(partial) / "stubs", folder)
         except OSError:  # another script was first
-            if not (folder / "eyebox" / "v1" / "service_pb2_grpc.py").exists():
+            if not (folder / "eyebox" / "v1" / _NEWEST).exists():
                 raise

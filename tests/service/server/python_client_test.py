@@ -114,6 +114,34 @@ class PythonClientTest(unittest.TestCase):
         for file in files:
             self.assertEqual(file.read_bytes(), (out / file.name).read_bytes(), file.name)
 
+    def test_script_from_the_readme_captures_both_ways_round(self):
+        made = run(EYEBOX, "simulate", "sim:rift-s-like", "--seed", 1, "--levels", 5,
+                   "--out", self.folder / "without-server")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        by_command = self.folder / "without-server-result"
+        done = run(EYEBOX, "run", self.folder / "without-server", "--out", by_command)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        out = self.folder / "both-ways"
+        done = run(sys.executable, PACKAGE / "examples" / "both_ways.py", "--address",
+                   self.server.address, "--levels", 5, "--out", out,
+                   env={**os.environ, "PYTHONPATH": str(PACKAGE)})
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("capture 1:", done.stdout)
+        names = sorted(path.name for path in by_command.iterdir())
+        for way in ("told_what_to_show", "deciding_what_to_show"):
+            self.assertEqual(sorted(path.name for path in (out / way).iterdir()), names)
+            _, different, missing = filecmp.cmpfiles(by_command, out / way, names, shallow=False)
+            self.assertEqual((different, missing), ([], []), way)
+            self.assertGreater((out / f"{way}.pgm").stat().st_size, 1000)
+
+    def test_maps_come_with_their_unit_and_uncertainty(self):
+        import numpy
+        g = self.client.run(recording="rec").map("g")
+        self.assertEqual(g.unit, "1")
+        self.assertEqual(g.value.shape, g.sigma.shape)
+        self.assertLess(abs(numpy.nanmedian(g.value) - 1), 0.5)
+        self.assertGreater(numpy.nanmin(g.sigma), 0)
+
     def test_result_is_the_message_that_the_command_line_prints(self):
         from google.protobuf import json_format
         from eyebox.v1 import results_pb2

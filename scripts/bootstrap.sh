@@ -16,10 +16,10 @@ build_packages=(
   libopencv-dev # its CMake package demands every module; the four that are used are not enough
   libpng-dev libprotobuf-dev libspdlog-dev libssl-dev libtiff-dev libxxhash-dev
   libusb-1.0-0-dev # asked for by libaravis-dev's pkg-config file
-  protobuf-compiler protobuf-compiler-grpc
+  prometheus-cpp-dev protobuf-compiler protobuf-compiler-grpc
 )
 check_packages=(
-  aravis-tools ccache clang-format clang-tidy git
+  aravis-tools ccache clang clang-format clang-tidy git
   libbenchmark-dev libboost-dev libgmock-dev libgmp-dev libgtest-dev libmpfr-dev librapidcheck-dev
   python3 python3-grpcio python3-h5py python3-numpy python3-protobuf
   strace

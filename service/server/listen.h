@@ -1,8 +1,9 @@
-// Where the server may listen: a unix socket that only the owner and the group can open.
+// Where the server may listen: a unix socket that only the owner and the group can open, or TCP.
 #ifndef EYEBOX_SERVICE_SERVER_LISTEN_H_
 #define EYEBOX_SERVICE_SERVER_LISTEN_H_
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "absl/status/status.h"
@@ -10,8 +11,17 @@
 
 namespace eyebox::service {
 
-// The socket of "unix:PATH". Errors: InvalidArgument; Unimplemented for TCP.
-absl::StatusOr<std::filesystem::path> SocketOf(std::string_view address);
+struct Endpoint {
+  bool tcp = false;
+  std::filesystem::path socket;  // of "unix:PATH"
+  std::string host;              // of "HOST:PORT"; an IPv6 address keeps its brackets
+  int port = 0;                  // 0: one that is free
+
+  std::string ForGrpc() const;
+};
+
+// What "unix:PATH" or "HOST:PORT" says. Errors: InvalidArgument.
+absl::StatusOr<Endpoint> EndpointOf(std::string_view address);
 
 // Removes a socket that a server left when it was killed. Errors: FailedPrecondition if a server
 // answers on it, or if something that is no socket stands there.

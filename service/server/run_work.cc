@@ -8,6 +8,8 @@
 #include "capture/base/status.h"
 #include "service/pipeline.h"
 #include "service/server/store/beneath.h"
+#include "service/server/store/rigs.h"
+#include "service/server/verb_work.h"
 
 namespace eyebox::service {
 namespace {
@@ -19,15 +21,6 @@ RunOptions OptionsOf(const v1::CreateRunRequest& request) {
   return options;
 }
 
-capture::RigConfig ConfigOf(const v1::Rig& rig) {
-  return {.name = rig.name(),
-          .camera_uri = rig.camera_uri(),
-          .seed = rig.seed(),
-          .photodiode_uri = rig.photodiode_uri(),
-          .trigger_uri = rig.trigger_uri(),
-          .camera_trigger_line = rig.camera_trigger_line()};
-}
-
 // A client knows its recording by name; how the server got hold of it says nothing.
 absl::Status NamedAsAsked(const absl::Status& status, const std::string& path,
                           const std::string& name) {
@@ -37,16 +30,16 @@ absl::Status NamedAsAsked(const absl::Status& status, const std::string& path,
 
 absl::Status RunOnRecording(const RootFolder& data, const Assignment& assignment,
                             const Watcher& watcher) {
-  const std::string& name = assignment.request.recording();
+  const std::string& name = assignment.request.run().recording();
   EYEBOX_ASSIGN_OR_RETURN(const OwnedFd recording, data.OpenFolder(name));
   const auto result =
-      RunRecording(recording.Path(), assignment.out, OptionsOf(assignment.request), watcher);
+      RunRecording(recording.Path(), assignment.out, OptionsOf(assignment.request.run()), watcher);
   return NamedAsAsked(result.status(), recording.Path().string(), name);
 }
 
 absl::Status RunOnRig(const Assignment& assignment, const Watcher& watcher) {
-  return RunRig(ConfigOf(assignment.request.rig()), assignment.recording, assignment.out,
-                OptionsOf(assignment.request), watcher)
+  return RunRig(ConfigOf(assignment.request.run().rig()), assignment.recording, assignment.out,
+                OptionsOf(assignment.request.run()), watcher)
       .status();
 }
 
@@ -56,8 +49,10 @@ absl::StatusOr<Work> MakeRunWork(const std::filesystem::path& data) {
   EYEBOX_ASSIGN_OR_RETURN(RootFolder opened, RootFolder::Open(data));
   const auto root = std::make_shared<const RootFolder>(std::move(opened));
   return [root](const Assignment& assignment, const Watcher& watcher) {
-    return assignment.request.has_recording() ? RunOnRecording(*root, assignment, watcher)
-                                              : RunOnRig(assignment, watcher);
+    const v1::CreateJobRequest& request = assignment.request;
+    if (!request.has_run()) return CarryOutVerb(*root, assignment, watcher);
+    return request.run().has_recording() ? RunOnRecording(*root, assignment, watcher)
+                                         : RunOnRig(assignment, watcher);
   };
 }
 

@@ -4,11 +4,19 @@
 #include <grpcpp/grpcpp.h>
 #include <grpcpp/health_check_service_interface.h>
 
+#include <atomic>
 #include <chrono>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "capture/base/status.h"
+#include "service/server/capture_service.h"
+#include "service/server/credentials.h"
 #include "service/server/listen.h"
+#include "service/server/observe/metrics.h"
+#include "service/server/observe/request_log.h"
+#include "service/server/recording_service.h"
 #include "service/server/run_service.h"
 
 namespace eyebox::service {
@@ -22,36 +30,64 @@ constexpr std::chrono::seconds kDrainTime(5);
 
 class GrpcServer final : public Server {
  public:
-  GrpcServer(RootFolder recordings, std::unique_ptr<Jobs> jobs)
-      : recordings_(std::move(recordings)), jobs_(std::move(jobs)) {}
+  GrpcServer(const ServerOptions& options, const Clock* clock, RootFolder recordings,
+             std::unique_ptr<Jobs> jobs)
+      : options_(options),
+        clock_(clock),
+        recordings_(std::move(recordings)),
+        jobs_(std::move(jobs)),
+        log_(options.log ? options.log : std::make_shared<ServerLog>([](const std::string&) {})) {}
   ~GrpcServer() override { Stop(); }
 
-  absl::Status Listen(const std::filesystem::path& socket) {
-    EYEBOX_RETURN_IF_ERROR(RemoveStaleSocket(socket));
+  absl::Status ExposeMetrics() {
+    if (options_.metrics.empty()) return absl::OkStatus();
+    EYEBOX_ASSIGN_OR_RETURN(metrics_port_, metrics_.Expose(options_.metrics));
+    return absl::OkStatus();
+  }
+
+  absl::Status Listen(Endpoint endpoint,
+                      const std::shared_ptr<grpc::ServerCredentials>& credentials) {
+    if (!endpoint.tcp) EYEBOX_RETURN_IF_ERROR(RemoveStaleSocket(endpoint.socket));
     grpc::EnableDefaultHealthCheckService(true);
     // Named here, or the linker would drop the library and with it reflection.
     grpc::reflection::InitProtoReflectionServerBuilderPlugin();
     grpc::ServerBuilder builder;
-    builder.AddListeningPort("unix:" + socket.string(), grpc::InsecureServerCredentials());
+    std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> logs;
+    logs.push_back(MakeRequestLog(log_.get(), &metrics_, clock_));
+    builder.experimental().SetInterceptorCreators(std::move(logs));
+    // Two servers on one port would share the calls between them.
+    builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
+    int port = 0;
+    builder.AddListeningPort(endpoint.ForGrpc(), credentials, &port);
     builder.SetMaxReceiveMessageSize(kMaxRequestBytes);
     builder.AddChannelArgument(GRPC_ARG_MAX_METADATA_SIZE, kMaxMetadataBytes);
     builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kMaxStreamsPerConnection);
     builder.RegisterService(&service_);
+    builder.RegisterService(&job_service_);
+    builder.RegisterService(&capture_service_);
+    builder.RegisterService(&recording_service_);
     {
       const SocketMode mode;
       server_ = builder.BuildAndStart();
     }
     if (!server_) {
-      return DeviceFailed(socket.string(), "cannot listen there",
-                          "check that its folder exists and may be written to");
+      return DeviceFailed(endpoint.ForGrpc(), "cannot listen there",
+                          endpoint.tcp ? "check the name and that no one else uses the port"
+                                       : "check that its folder exists and may be written to");
     }
+    if (endpoint.tcp) endpoint.port = port;
+    address_ = endpoint.ForGrpc();
     jobs_->Start();
-    SetServing(true);
+    watch_.emplace(Folders(), options_.health, [this](const auto& trouble) { Tell(trouble); });
     return absl::OkStatus();
   }
 
+  std::string address() const override { return address_; }
+  int metrics_port() const override { return metrics_port_; }
+
   void Stop() override {
     if (!server_) return;
+    watch_.reset();
     SetServing(false);
     jobs_->Stop();
     server_->Shutdown(std::chrono::system_clock::now() + kDrainTime);
@@ -61,30 +97,61 @@ class GrpcServer final : public Server {
   }
 
  private:
+  std::vector<std::filesystem::path> Folders() const { return {options_.data, options_.state}; }
+
+  MomentaryFigures Now() const {
+    return {.jobs_queued = jobs_->table().CountOf(v1::JOB_STATE_QUEUED),
+            .jobs_running = jobs_->table().CountOf(v1::JOB_STATE_RUNNING),
+            .disk_free_bytes = LeastFreeBytes(Folders()),
+            .serving = serving_};
+  }
+
+  void Tell(const std::string& trouble) {
+    const auto level = trouble.empty() ? ServerLog::Level::kInfo : ServerLog::Level::kWarning;
+    log_->Write(level, "health",
+                {{"status", trouble.empty() ? "SERVING" : "NOT_SERVING"}, {"message", trouble}});
+    SetServing(trouble.empty());
+  }
+
   void SetServing(bool serving) {
+    serving_ = serving;
     grpc::HealthCheckServiceInterface* health = server_->GetHealthCheckService();
     health->SetServingStatus(serving);
     health->SetServingStatus(v1::RunService::service_full_name(), serving);
   }
 
+  const ServerOptions options_;
+  const Clock* const clock_;
   const RootFolder recordings_;
   const std::unique_ptr<Jobs> jobs_;
+  const std::shared_ptr<ServerLog> log_;
+  std::atomic<bool> serving_ = false;
+  Metrics metrics_{[this] { return Now(); }};
+  int metrics_port_ = 0;
   Executor disk_{kDiskThreads};
   RunServiceImpl service_{{*jobs_, disk_, recordings_}};
+  JobServiceImpl job_service_{{*jobs_, disk_, recordings_}};
+  CaptureServiceImpl capture_service_{{*jobs_, disk_, recordings_}};
+  RecordingServiceImpl recording_service_{{*jobs_, disk_, recordings_}};
   std::unique_ptr<grpc::Server> server_;
+  std::string address_;
+  std::optional<HealthWatch> watch_;  // last: it tells the others
 };
 
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& options, Work work,
                                                       const Clock* clock) {
-  EYEBOX_ASSIGN_OR_RETURN(const std::filesystem::path socket, SocketOf(options.listen));
+  EYEBOX_ASSIGN_OR_RETURN(const Endpoint endpoint, EndpointOf(options.listen));
+  EYEBOX_ASSIGN_OR_RETURN(const auto credentials, MakeCredentials(options.access, endpoint.tcp));
   EYEBOX_ASSIGN_OR_RETURN(RootFolder recordings, RootFolder::Open(options.data));
   EYEBOX_ASSIGN_OR_RETURN(std::unique_ptr<JobStore> store, JobStore::Open(options.state));
   EYEBOX_ASSIGN_OR_RETURN(std::unique_ptr<Jobs> jobs,
                           Jobs::Open(std::move(store), std::move(work), clock, options.jobs));
-  auto server = std::make_unique<GrpcServer>(std::move(recordings), std::move(jobs));
-  EYEBOX_RETURN_IF_ERROR(server->Listen(socket));
+  auto server =
+      std::make_unique<GrpcServer>(options, clock, std::move(recordings), std::move(jobs));
+  EYEBOX_RETURN_IF_ERROR(server->ExposeMetrics());
+  EYEBOX_RETURN_IF_ERROR(server->Listen(endpoint, credentials));
   return server;
 }
 

@@ -104,6 +104,20 @@ absl::Status CatchUp(capture::Rig& rig, const capture::RecordingReader& recordin
   return absl::OkStatus();
 }
 
+absl::StatusOr<std::unique_ptr<capture::RecordingWriter>> CreateRecording(
+    const capture::Rig& rig, const CapturePlan& plan, const std::filesystem::path& recording) {
+  const std::filesystem::path sensor = rig.config.sensor;
+  capture::RecordingHeader header = capture::MakeHeader(rig, plan, *SystemClock());
+  if (!sensor.empty()) {
+    EYEBOX_RETURN_IF_ERROR(ReadSensorOf(rig.camera->Info(), sensor).status());
+    header.rig.sensor = kSensorFolder;  // the copy stays with the recording
+  }
+  EYEBOX_ASSIGN_OR_RETURN(auto writer,
+                          capture::RecordingWriter::Create(recording, header, SystemClock()));
+  if (!sensor.empty()) EYEBOX_RETURN_IF_ERROR(KeepSensor(sensor, recording));
+  return writer;
+}
+
 }  // namespace
 
 bool MeasuresWithDevice(const capture::Rig& rig) {
@@ -113,15 +127,7 @@ bool MeasuresWithDevice(const capture::Rig& rig) {
 absl::StatusOr<capture::RunReport> RecordPlan(capture::Rig& rig, const CapturePlan& plan,
                                               const std::filesystem::path& recording,
                                               const Watcher& watcher, const Settle& settle) {
-  const std::filesystem::path sensor = rig.config.sensor;
-  capture::RecordingHeader header = capture::MakeHeader(rig, plan, *SystemClock());
-  if (!sensor.empty()) {
-    EYEBOX_RETURN_IF_ERROR(ReadSensorOf(rig.camera->Info(), sensor).status());
-    header.rig.sensor = kSensorFolder;  // the copy stays with the recording
-  }
-  EYEBOX_ASSIGN_OR_RETURN(const auto writer,
-                          capture::RecordingWriter::Create(recording, header, SystemClock()));
-  if (!sensor.empty()) EYEBOX_RETURN_IF_ERROR(KeepSensor(sensor, recording));
+  EYEBOX_ASSIGN_OR_RETURN(const auto writer, CreateRecording(rig, plan, recording));
   return capture::RunPlan(rig, plan, *writer, OptionsFor(rig, recording, watcher, settle));
 }
 
@@ -141,6 +147,43 @@ absl::StatusOr<capture::RunReport> ResumePlan(capture::Rig& rig,
   EYEBOX_RETURN_IF_ERROR(CatchUp(rig, *reader));
   EYEBOX_ASSIGN_OR_RETURN(const auto writer, capture::RecordingWriter::Resume(recording));
   return capture::RunPlan(rig, left, *writer, options);
+}
+
+absl::StatusOr<std::unique_ptr<CaptureSession>> CaptureSession::Begin(
+    capture::Rig& rig, const CapturePlan& plan, const std::filesystem::path& recording,
+    const Settle& settle) {
+  std::unique_ptr<CaptureSession> session(new CaptureSession(rig, recording, settle));
+  EYEBOX_ASSIGN_OR_RETURN(session->writer_, CreateRecording(rig, plan, recording));
+  return session;
+}
+
+absl::StatusOr<std::unique_ptr<CaptureSession>> CaptureSession::Resume(
+    capture::Rig& rig, const std::filesystem::path& recording, const Settle& settle) {
+  std::unique_ptr<CaptureSession> session(new CaptureSession(rig, recording, settle));
+  EYEBOX_RETURN_IF_ERROR(capture::RecoverRecording(recording).status());
+  EYEBOX_ASSIGN_OR_RETURN(const auto reader, capture::RecordingReader::Open(recording));
+  EYEBOX_RETURN_IF_ERROR(CheckSameRig(reader->Header(), rig, recording.string()));
+  EYEBOX_ASSIGN_OR_RETURN(session->readings_, EarlierReadings(*reader));
+  EYEBOX_RETURN_IF_ERROR(CatchUp(rig, *reader));
+  EYEBOX_ASSIGN_OR_RETURN(session->writer_, capture::RecordingWriter::Resume(recording));
+  return session;
+}
+
+absl::StatusOr<capture::CaptureFigures> CaptureSession::Take(const CaptureSpec& spec,
+                                                             const Watcher& watcher) {
+  capture::RunOptions options = OptionsFor(rig_, recording_, watcher, settle_);
+  options.progress = nullptr;  // of a plan of one capture: tells nothing
+  options.earlier = readings_;
+  std::optional<capture::CaptureFigures> taken;
+  options.published = [log = options.published, &taken](const capture::CaptureFigures& figures) {
+    taken = figures;
+    return log(figures);
+  };
+  const absl::Status run = capture::RunPlan(rig_, {{spec}}, *writer_, options).status();
+  // It is on disk, whatever came afterwards.
+  if (taken) readings_.push_back(taken->reading);
+  EYEBOX_RETURN_IF_ERROR(run);
+  return *std::move(taken);
 }
 
 }  // namespace eyebox::service

@@ -3,9 +3,12 @@
 #define EYEBOX_SERVICE_STEPS_RECORD_PLAN_H_
 
 #include <filesystem>
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "absl/status/statusor.h"
+#include "capture/recording/writer.h"
 #include "capture/run.h"
 #include "service/watcher.h"
 
@@ -34,6 +37,36 @@ absl::StatusOr<capture::RunReport> ResumePlan(capture::Rig& rig,
                                               const std::optional<CapturePlan>& plan,
                                               const std::filesystem::path& recording,
                                               const Watcher& watcher, const Settle& settle = {});
+
+// Captures one after the other, each when it is asked for.
+class CaptureSession {
+ public:
+  // As RecordPlan() and ResumePlan() with the same arguments; `plan` is only written down and may
+  // be empty. `rig` must outlive the session.
+  static absl::StatusOr<std::unique_ptr<CaptureSession>> Begin(
+      capture::Rig& rig, const CapturePlan& plan, const std::filesystem::path& recording,
+      const Settle& settle = {});
+  static absl::StatusOr<std::unique_ptr<CaptureSession>> Resume(
+      capture::Rig& rig, const std::filesystem::path& recording, const Settle& settle = {});
+
+  // Captures on stable storage, suspect ones included.
+  int Published() const { return writer_->PublishedCount(); }
+  // What they read, but for suspect ones; of earlier sessions as the first frame does.
+  const std::vector<capture::Reading>& Readings() const { return readings_; }
+
+  // The next capture, on stable storage when this returns. Errors: those of RunPlan().
+  absl::StatusOr<capture::CaptureFigures> Take(const CaptureSpec& spec, const Watcher& watcher);
+
+ private:
+  CaptureSession(capture::Rig& rig, std::filesystem::path recording, Settle settle)
+      : rig_(rig), recording_(std::move(recording)), settle_(std::move(settle)) {}
+
+  capture::Rig& rig_;
+  const std::filesystem::path recording_;
+  const Settle settle_;
+  std::unique_ptr<capture::RecordingWriter> writer_;
+  std::vector<capture::Reading> readings_;
+};
 
 }  // namespace eyebox::service
 

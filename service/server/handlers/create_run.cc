@@ -1,21 +1,17 @@
-#include "capture/base/status.h"
+#include "service/server/handlers/create_job.h"
 #include "service/server/handlers/handlers.h"
 #include "service/server/handlers/reply.h"
 #include "service/server/handlers/validate_run.h"
-#include "service/server/store/names.h"
 
 namespace eyebox::service {
 namespace {
 
-absl::StatusOr<v1::Job> Create(const HandlerContext& context, const v1::CreateRunRequest& request) {
-  // A job that is there stays there, whatever became of its recording.
-  EYEBOX_ASSIGN_OR_RETURN(const auto existing, context.jobs.Existing(request));
-  if (existing) return *existing;
-  if (request.has_recording()) {
-    const auto folder = context.recordings.OpenFolder(request.recording());
-    if (!folder.ok()) return WithField(folder.status(), "recording");
-  }
-  return context.jobs.Create(request);
+v1::CreateJobRequest JobOf(const v1::CreateRunRequest& request) {
+  v1::CreateJobRequest job;
+  job.set_request_id(request.request_id());
+  *job.mutable_run() = request;
+  job.mutable_run()->clear_request_id();
+  return job;
 }
 
 }  // namespace
@@ -30,7 +26,7 @@ grpc::ServerUnaryReactor* CreateRun(const HandlerContext& context,
     return reactor;
   }
   context.disk.Post([&context, reactor, request, response] {
-    Reply(reactor, Create(context, *request), response);
+    Reply(reactor, CreateCheckedJob(context, JobOf(*request)), response);
   });
   return reactor;
 }

@@ -1,10 +1,14 @@
-// One function a call, one file a function; service.proto says what each does and its errors.
+// One function a call, most in a file of their own; the protos of the services say what each does
+// and its errors.
 #ifndef EYEBOX_SERVICE_SERVER_HANDLERS_HANDLERS_H_
 #define EYEBOX_SERVICE_SERVER_HANDLERS_HANDLERS_H_
 
 #include <grpcpp/server_context.h>
 #include <grpcpp/support/server_callback.h>
 
+#include "eyebox/v1/capture_service.pb.h"
+#include "eyebox/v1/job_service.pb.h"
+#include "eyebox/v1/recording_service.pb.h"
 #include "eyebox/v1/results.pb.h"
 #include "eyebox/v1/service.pb.h"
 #include "service/server/handlers/context.h"
@@ -36,6 +40,48 @@ grpc::ServerUnaryReactor* ReadArtifact(const HandlerContext& context,
                                        grpc::CallbackServerContext* call,
                                        const v1::ReadArtifactRequest* request,
                                        v1::ArtifactChunk* response);
+
+grpc::ServerUnaryReactor* CreateJob(const HandlerContext& context,
+                                    grpc::CallbackServerContext* call,
+                                    const v1::CreateJobRequest* request, v1::Job* response);
+
+grpc::ServerUnaryReactor* MakePlan(const HandlerContext& context, grpc::CallbackServerContext* call,
+                                   const v1::MakePlanRequest* request, v1::CapturePlan* response);
+grpc::ServerUnaryReactor* Capture(const HandlerContext& context, grpc::CallbackServerContext* call,
+                                  const v1::CaptureRequest* request, v1::CaptureReply* response);
+grpc::ServerUnaryReactor* FinishCapture(const HandlerContext& context,
+                                        grpc::CallbackServerContext* call,
+                                        const v1::FinishCaptureRequest* request, v1::Job* response);
+grpc::ServerUnaryReactor* NextStimulus(const HandlerContext& context,
+                                       const v1::NextStimulusRequest* request,
+                                       v1::StimulusStep* response);
+grpc::ServerUnaryReactor* AckShown(const HandlerContext& context, grpc::CallbackServerContext* call,
+                                   const v1::AckShownRequest* request, v1::AckShownReply* response);
+grpc::ServerBidiReactor<v1::RunPlanRequest, v1::StimulusStep>* RunPlan(
+    const HandlerContext& context);
+
+grpc::ServerUnaryReactor* ListRigs(const HandlerContext& context, grpc::CallbackServerContext* call,
+                                   const v1::ListRigsRequest* request,
+                                   v1::ListRigsResponse* response);
+grpc::ServerUnaryReactor* GetRig(const HandlerContext& context, grpc::CallbackServerContext* call,
+                                 const v1::GetRigRequest* request, v1::RigEntry* response);
+grpc::ServerUnaryReactor* ListRecordings(const HandlerContext& context,
+                                         grpc::CallbackServerContext* call,
+                                         const v1::ListRecordingsRequest* request,
+                                         v1::ListRecordingsResponse* response);
+grpc::ServerUnaryReactor* GetRecording(const HandlerContext& context,
+                                       grpc::CallbackServerContext* call,
+                                       const v1::GetRecordingRequest* request,
+                                       v1::RecordingEntry* response);
+grpc::ServerUnaryReactor* ListCaptures(const HandlerContext& context,
+                                       grpc::CallbackServerContext* call,
+                                       const v1::ListCapturesRequest* request,
+                                       v1::ListCapturesResponse* response);
+grpc::ServerUnaryReactor* ReadArray(const HandlerContext& context,
+                                    grpc::CallbackServerContext* call,
+                                    const v1::ReadArrayRequest* request, v1::ArrayChunk* response);
+grpc::ServerWriteReactor<v1::ArrayChunk>* StreamArray(const HandlerContext& context,
+                                                      const v1::ReadArrayRequest* request);
 
 }  // namespace eyebox::service
 

@@ -3,6 +3,7 @@
 #define EYEBOX_SERVICE_SERVER_HANDLERS_RESULT_FILES_H_
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 #include "absl/status/statusor.h"
@@ -27,6 +28,8 @@ class ResultFile {
                                          const std::string& artifact);
 
   const v1::Artifact& artifact() const { return artifact_; }
+  // Leads to it while this lives.
+  std::filesystem::path path() const { return fd_.Path(); }
   // At most `limit_bytes` from `offset`, shorter only at the end of the file.
   // Errors: OutOfRange if `offset` is beyond the end; DataLoss, the errno of the disk.
   absl::StatusOr<v1::ArtifactChunk> Read(uint64_t offset, uint64_t limit_bytes) const;

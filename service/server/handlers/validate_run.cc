@@ -21,14 +21,11 @@ constexpr SizeRule kSizes[] = {
     {"pps_strip_size", &v1::CreateRunRequest::pps_strip_size, 2, 32},
 };
 
-absl::Status ValidateRig(const v1::Rig& rig) {
-  EYEBOX_RETURN_IF_ERROR(CheckName(kRigRule, "rig.name", rig.name()).status());
-  if (!rig.sensor().empty()) {
-    return BadField("rig.sensor", "is given, and no path of a client is followed",
-                    "record with the command line, or put sensor/ into the recording");
-  }
-  return CheckName(kCameraRule, "rig.camera_uri", rig.camera_uri()).status();
-}
+struct OptionalName {
+  const NameRule& rule;
+  std::string_view field;
+  const std::string& name;
+};
 
 absl::Status ValidateSource(const v1::CreateRunRequest& request) {
   switch (request.source_case()) {
@@ -44,8 +41,30 @@ absl::Status ValidateSource(const v1::CreateRunRequest& request) {
 
 }  // namespace
 
+absl::Status ValidateRig(const v1::Rig& rig) {
+  EYEBOX_RETURN_IF_ERROR(CheckName(kRigRule, "rig.name", rig.name()).status());
+  if (!rig.sensor().empty()) {
+    return BadField("rig.sensor", "is given, and no path of a client is followed",
+                    "record with the command line, or put sensor/ into the recording");
+  }
+  EYEBOX_RETURN_IF_ERROR(CheckName(kCameraRule, "rig.camera_uri", rig.camera_uri()).status());
+  const OptionalName optional[] = {
+      {kPhotodiodeRule, "rig.photodiode_uri", rig.photodiode_uri()},
+      {kTriggerRule, "rig.trigger_uri", rig.trigger_uri()},
+      {kLineRule, "rig.camera_trigger_line", rig.camera_trigger_line()}};
+  for (const OptionalName& one : optional) {
+    if (one.name.empty()) continue;
+    EYEBOX_RETURN_IF_ERROR(CheckName(one.rule, one.field, one.name).status());
+  }
+  return absl::OkStatus();
+}
+
 absl::Status ValidateRun(const v1::CreateRunRequest& request) {
   EYEBOX_RETURN_IF_ERROR(CheckName(kRequestIdRule, "request_id", request.request_id()).status());
+  return ValidateRunWork(request);
+}
+
+absl::Status ValidateRunWork(const v1::CreateRunRequest& request) {
   EYEBOX_RETURN_IF_ERROR(ValidateSource(request));
   for (const SizeRule& rule : kSizes) {
     const int value = (request.*rule.value)();

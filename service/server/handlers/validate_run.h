@@ -9,6 +9,10 @@ namespace eyebox::service {
 
 // Looks at the request alone. Errors: InvalidArgument with the field.
 absl::Status ValidateRun(const v1::CreateRunRequest& request);
+// The same but for the request_id.
+absl::Status ValidateRunWork(const v1::CreateRunRequest& request);
+// A simulated rig.
+absl::Status ValidateRig(const v1::Rig& rig);
 
 }  // namespace eyebox::service
 

@@ -12,7 +12,7 @@ bool HasEnded(const v1::Job& job) {
          job.state() == v1::JOB_STATE_CANCELLED;
 }
 
-void JobTable::Insert(int64_t number, const v1::CreateRunRequest& request,
+void JobTable::Insert(int64_t number, const v1::CreateJobRequest& request,
                       std::vector<v1::JobEvent> events) {
   const std::lock_guard lock(mutex_);
   if (!request.request_id().empty()) by_request_id_[request.request_id()] = number;
@@ -20,15 +20,13 @@ void JobTable::Insert(int64_t number, const v1::CreateRunRequest& request,
 }
 
 void JobTable::Append(int64_t number, const v1::JobEvent& event) {
-  std::vector<std::shared_ptr<const Listener>> listeners;
   {
     const std::lock_guard lock(mutex_);
     const auto entry = entries_.find(number);
     if (entry == entries_.end()) return;
     entry->second.events.push_back(event);
-    for (const auto& [id, listener] : entry->second.listeners) listeners.push_back(listener);
   }
-  for (const auto& listener : listeners) (*listener)();
+  Notify(number);
 }
 
 absl::StatusOr<const JobTable::Entry*> JobTable::Find(int64_t number) const {
@@ -45,7 +43,7 @@ absl::StatusOr<v1::Job> JobTable::Latest(int64_t number) const {
   return entry->events.back().job();
 }
 
-absl::StatusOr<v1::CreateRunRequest> JobTable::Request(int64_t number) const {
+absl::StatusOr<v1::CreateJobRequest> JobTable::Request(int64_t number) const {
   const std::lock_guard lock(mutex_);
   EYEBOX_ASSIGN_OR_RETURN(const Entry* entry, Find(number));
   return entry->request;
@@ -105,6 +103,17 @@ void JobTable::RemoveListener(int64_t number, uint64_t id) {
   if (listener == entry->second.listeners.end()) return;
   removed = std::move(listener->second);
   entry->second.listeners.erase(listener);
+}
+
+void JobTable::Notify(int64_t number) const {
+  std::vector<std::shared_ptr<const Listener>> listeners;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto entry = entries_.find(number);
+    if (entry == entries_.end()) return;
+    for (const auto& [id, listener] : entry->second.listeners) listeners.push_back(listener);
+  }
+  for (const auto& listener : listeners) (*listener)();
 }
 
 void JobTable::NotifyAll() const {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "eyebox/v1/job_service.pb.h"
 #include "eyebox/v1/service.pb.h"
 
 namespace eyebox::service {
@@ -26,12 +27,12 @@ using Listener = std::function<void()>;
 // Thread-safe; holds no lock while it calls listeners. Errors of all calls: NotFound.
 class JobTable {
  public:
-  void Insert(int64_t number, const v1::CreateRunRequest& request,
+  void Insert(int64_t number, const v1::CreateJobRequest& request,
               std::vector<v1::JobEvent> events);
   void Append(int64_t number, const v1::JobEvent& event);
 
   absl::StatusOr<v1::Job> Latest(int64_t number) const;
-  absl::StatusOr<v1::CreateRunRequest> Request(int64_t number) const;
+  absl::StatusOr<v1::CreateJobRequest> Request(int64_t number) const;
   // Nothing if the job has not come so far yet.
   absl::StatusOr<std::optional<v1::JobEvent>> Event(int64_t number, uint32_t sequence) const;
   // Nothing if no job was created with it.
@@ -44,12 +45,14 @@ class JobTable {
 
   absl::StatusOr<uint64_t> AddListener(int64_t number, Listener listener);
   void RemoveListener(int64_t number, uint64_t id);
+  // Calls every listener of the job.
+  void Notify(int64_t number) const;
   // Calls every listener of every job.
   void NotifyAll() const;
 
  private:
   struct Entry {
-    v1::CreateRunRequest request;
+    v1::CreateJobRequest request;
     std::vector<v1::JobEvent> events;  // never empty; [i] has sequence i + 1
     std::map<uint64_t, std::shared_ptr<const Listener>> listeners;
   };

@@ -15,6 +15,21 @@ namespace {
 
 // Bounds the events of one attempt: 200.
 constexpr double kProgressStep = 0.005;
+// Steps of a capture job are numbered from the newest event on: above those of every attempt
+// before, however the server stopped. No plan has so many captures.
+constexpr uint64_t kStepsOfAnEvent = 1'000'000;
+
+// The events of a job that starts for the first time: created, started.
+constexpr uint32_t kFirstStart = 2;
+
+// What a job holds while it runs. A rig file is as good as its camera: two that name one camera
+// meet at the device, which serves one.
+std::string RigOf(const v1::CreateJobRequest& request) {
+  if (request.run().has_rig()) return request.run().rig().camera_uri();
+  if (!request.has_capture()) return "";
+  return request.capture().has_simulated() ? request.capture().simulated().camera_uri()
+                                           : request.capture().rig();
+}
 
 std::string IdOf(int64_t number) { return JobName(number).substr(kJobRule.prefix.size()); }
 
@@ -92,9 +107,10 @@ void Jobs::InsertDamaged(int64_t number, const StoredJob& stored) {
 
 void Jobs::Start() {
   const std::lock_guard lock(publishing_);
-  executor_ = std::make_unique<Executor>(1);
+  lanes_ = std::make_unique<Lanes>(options_.capture_threads);
   for (const int64_t number : std::exchange(recovered_, {})) {
-    executor_->Post([this, number] { Run(number); });
+    const auto request = table_.Request(number);
+    if (request.ok()) Post(number, *request);
   }
 }
 
@@ -103,14 +119,14 @@ void Jobs::Stop() {
     const std::lock_guard lock(publishing_);
     stopping_ = true;
   }
-  if (executor_) executor_->Stop();
+  if (lanes_) lanes_->Stop();
   table_.NotifyAll();
 }
 
-absl::StatusOr<std::optional<v1::Job>> Jobs::Existing(const v1::CreateRunRequest& request) const {
+absl::StatusOr<std::optional<v1::Job>> Jobs::Existing(const v1::CreateJobRequest& request) const {
   const auto number = table_.WithRequestId(request.request_id());
   if (!number) return std::nullopt;
-  EYEBOX_ASSIGN_OR_RETURN(const v1::CreateRunRequest first, table_.Request(*number));
+  EYEBOX_ASSIGN_OR_RETURN(const v1::CreateJobRequest first, table_.Request(*number));
   if (!google::protobuf::util::MessageDifferencer::Equals(first, request)) {
     return WithField(
         absl::AlreadyExistsError(Complaint(
@@ -123,7 +139,7 @@ absl::StatusOr<std::optional<v1::Job>> Jobs::Existing(const v1::CreateRunRequest
 }
 
 absl::Status Jobs::CheckOpenForMore() const {
-  if (!executor_ || stopping_) {
+  if (!lanes_ || stopping_) {
     return absl::UnavailableError(
         Complaint("server", stopping_ ? "is stopping" : "is starting",
                   "create the run again, with the same request_id, once it is up"));
@@ -136,7 +152,7 @@ absl::Status Jobs::CheckOpenForMore() const {
   return absl::OkStatus();
 }
 
-absl::StatusOr<v1::Job> Jobs::Create(const v1::CreateRunRequest& request) {
+absl::StatusOr<v1::Job> Jobs::Create(const v1::CreateJobRequest& request) {
   const std::lock_guard lock(publishing_);
   EYEBOX_ASSIGN_OR_RETURN(const auto existing, Existing(request));
   if (existing) return *existing;
@@ -147,7 +163,7 @@ absl::StatusOr<v1::Job> Jobs::Create(const v1::CreateRunRequest& request) {
   const StoredJob stored = {IdOf(number), request, {EventOf(job)}, absl::OkStatus()};
   EYEBOX_RETURN_IF_ERROR(store_->Create(stored));
   table_.Insert(number, request, stored.events);
-  executor_->Post([this, number] { Run(number); });
+  Post(number, request);
   return job;
 }
 
@@ -162,6 +178,29 @@ std::filesystem::path Jobs::ResultOf(int64_t number) const {
 bool Jobs::CancelRequested(int64_t number) const {
   const auto job = table_.Latest(number);
   return job.ok() && job->cancel_requested();
+}
+
+absl::StatusOr<std::shared_ptr<StimulusDesk>> Jobs::DeskOf(int64_t number) const {
+  EYEBOX_ASSIGN_OR_RETURN(const v1::CreateJobRequest request, table_.Request(number));
+  EYEBOX_ASSIGN_OR_RETURN(const v1::Job job, table_.Latest(number));
+  if (!request.has_capture() || HasEnded(job)) {
+    return WithField(
+        Rejected("name", HasEnded(job) ? "the job has ended" : "the job does not capture",
+                 "create a capture job"),
+        "name");
+  }
+  const std::lock_guard lock(desks_mutex_);
+  const auto desk = desks_.find(number);
+  if (desk != desks_.end() && !stopping_) return desk->second;
+  return absl::UnavailableError(
+      Complaint("name", stopping_ ? "the server is stopping" : "the job waits for its turn",
+                "ask again in a moment"));
+}
+
+void Jobs::Post(int64_t number, const v1::CreateJobRequest& request) {
+  lanes_->Post({.lane = request.has_capture() ? Lanes::Lane::kCapture : Lanes::Lane::kAnalysis,
+                .rig = RigOf(request),
+                .run = [this, number] { Run(number); }});
 }
 
 void Jobs::Run(int64_t number) {
@@ -179,8 +218,29 @@ void Jobs::Run(int64_t number) {
 }
 
 absl::Status Jobs::Attempt(int64_t number) {
+  EYEBOX_ASSIGN_OR_RETURN(const v1::Job job, table_.Latest(number));
+  const auto desk = std::make_shared<StimulusDesk>(job.last_sequence() * kStepsOfAnEvent,
+                                                   [this, number] { table_.Notify(number); });
+  {
+    const std::lock_guard lock(desks_mutex_);
+    desks_[number] = desk;
+  }
+  const absl::Status status = AttemptAt(number, desk);
+  {
+    const std::lock_guard lock(desks_mutex_);
+    desks_.erase(number);
+  }
+  desk->Close(status.ok() || absl::IsCancelled(status)
+                  ? absl::UnavailableError(
+                        Complaint("name", "the job does not capture any more", "see its state"))
+                  : status);
+  return status;
+}
+
+absl::Status Jobs::AttemptAt(int64_t number, const std::shared_ptr<StimulusDesk>& desk) {
   const std::string id = IdOf(number);
-  EYEBOX_ASSIGN_OR_RETURN(const v1::CreateRunRequest request, table_.Request(number));
+  EYEBOX_ASSIGN_OR_RETURN(const v1::CreateJobRequest request, table_.Request(number));
+  EYEBOX_ASSIGN_OR_RETURN(const v1::Job begun, table_.Latest(number));
   EYEBOX_RETURN_IF_ERROR(store_->Clear(id));
   absl::Status disk;
   double published = 0;
@@ -191,8 +251,12 @@ absl::Status Jobs::Attempt(int64_t number) {
     published = progress.fraction;
     disk = Publish(number, [&](v1::Job& job) { MarkProgress(progress, job); }).status();
   };
-  const absl::Status worked =
-      work_({request, store_->RecordingOf(id), store_->PartialResultOf(id)}, watcher);
+  const absl::Status worked = work_({.request = request,
+                                     .recording = store_->RecordingOf(id),
+                                     .out = store_->PartialResultOf(id),
+                                     .started_before = begun.last_sequence() > kFirstStart,
+                                     .desk = desk},
+                                    watcher);
   EYEBOX_RETURN_IF_ERROR(disk);
   EYEBOX_RETURN_IF_ERROR(worked);
   EYEBOX_ASSIGN_OR_RETURN(const std::vector<v1::Artifact> artifacts, store_->PublishResult(id));

@@ -1,4 +1,4 @@
-// Durable jobs: created, run one after the other, watched, cancelled; a restart loses none.
+// Durable jobs: created, run, watched, cancelled; a restart loses none.
 #ifndef EYEBOX_SERVICE_SERVER_JOBS_JOBS_H_
 #define EYEBOX_SERVICE_SERVER_JOBS_JOBS_H_
 
@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -15,9 +16,11 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "capture/base/clock.h"
+#include "eyebox/v1/job_service.pb.h"
 #include "eyebox/v1/service.pb.h"
-#include "service/server/jobs/executor.h"
 #include "service/server/jobs/job_table.h"
+#include "service/server/jobs/lanes.h"
+#include "service/server/jobs/stimulus_desk.h"
 #include "service/server/store/job_store.h"
 #include "service/watcher.h"
 
@@ -25,15 +28,18 @@ namespace eyebox::service {
 
 // What a job has to do and where.
 struct Assignment {
-  v1::CreateRunRequest request;
-  std::filesystem::path recording;  // where a rig's frames go; does not exist yet
-  std::filesystem::path out;        // exists and is empty; every file in it becomes an artifact
+  v1::CreateJobRequest request;
+  std::filesystem::path recording;     // where a rig's frames go; does not exist yet
+  std::filesystem::path out;           // exists and is empty; every file in it becomes an artifact
+  bool started_before = false;         // by a server that was stopped: it may have left something
+  std::shared_ptr<StimulusDesk> desk;  // where clients say what is shown; never null
 };
 using Work = std::function<absl::Status(const Assignment&, const Watcher&)>;
 
 struct JobsOptions {
-  int queue_limit = 64;  // jobs that wait
-  int max_attempts = 3;  // starts of one job before it counts as what stops the server
+  int queue_limit = 64;     // jobs that wait
+  int capture_threads = 4;  // rigs that capture at a time
+  int max_attempts = 3;     // starts of one job before it counts as what stops the server
 };
 
 // Thread-safe. Calls marked "disk" wait for stable storage and do not belong in a reactor.
@@ -53,14 +59,17 @@ class Jobs {
   bool stopping() const { return stopping_; }
 
   // Nothing if the request_id is new. Errors: AlreadyExists if it belongs to another request.
-  absl::StatusOr<std::optional<v1::Job>> Existing(const v1::CreateRunRequest& request) const;
+  absl::StatusOr<std::optional<v1::Job>> Existing(const v1::CreateJobRequest& request) const;
   // Disk. The request was validated. Gives the existing job if there is one.
   // Errors: AlreadyExists, ResourceExhausted, Unavailable, those of the store.
-  absl::StatusOr<v1::Job> Create(const v1::CreateRunRequest& request);
+  absl::StatusOr<v1::Job> Create(const v1::CreateJobRequest& request);
   // Disk. A job that has ended stays as it is. Errors: NotFound, those of the store.
   absl::StatusOr<v1::Job> Cancel(int64_t number);
 
   JobTable& table() { return table_; }
+  // Where clients meet the job. Errors: NotFound, FailedPrecondition (it does not capture, or has
+  // ended), Unavailable (it waits for its turn, or the server stops).
+  absl::StatusOr<std::shared_ptr<StimulusDesk>> DeskOf(int64_t number) const;
   std::filesystem::path ResultOf(int64_t number) const;
 
  private:
@@ -74,8 +83,10 @@ class Jobs {
   void InsertDamaged(int64_t number, const StoredJob& stored);
   absl::Status CheckOpenForMore() const;
 
+  void Post(int64_t number, const v1::CreateJobRequest& request);
   void Run(int64_t number);
   absl::Status Attempt(int64_t number);
+  absl::Status AttemptAt(int64_t number, const std::shared_ptr<StimulusDesk>& desk);
   void End(int64_t number, const absl::Status& status);
   // Adds an event with the job as `change` leaves it, on disk and then in the table. One that has
   // ended, or that `change` leaves as it is, gets none.
@@ -91,7 +102,9 @@ class Jobs {
   std::vector<int64_t> recovered_;
   std::mutex publishing_;  // orders events on disk as in the table
   std::atomic<bool> stopping_ = false;
-  std::unique_ptr<Executor> executor_;  // set by Start
+  mutable std::mutex desks_mutex_;
+  std::map<int64_t, std::shared_ptr<StimulusDesk>> desks_;  // of the jobs under way
+  std::unique_ptr<Lanes> lanes_;                            // set by Start
 };
 
 // jobs/000001 and its number.

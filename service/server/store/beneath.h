@@ -40,6 +40,9 @@ class RootFolder {
   // Also refuses a folder with a symbolic link or a special file anywhere in it.
   absl::StatusOr<OwnedFd> OpenFolder(const std::string& relative) const;
 
+  // As OwnedFd::Path().
+  std::filesystem::path Path() const { return fd_.Path(); }
+
  private:
   explicit RootFolder(OwnedFd fd) : fd_(std::move(fd)) {}
   absl::StatusOr<OwnedFd> OpenBeneath(const std::string& relative, int flags) const;

@@ -79,10 +79,22 @@ absl::StatusOr<v1::Artifact> Describe(const fs::path& file) {
   return artifact;
 }
 
+// Before there was other work than runs, the request for a run stood there by itself.
+absl::Status ReadRequest(const fs::path& file, v1::CreateJobRequest& request) {
+  const absl::Status read = ReadJson(file, request);
+  v1::CreateRunRequest run;
+  if (read.ok() || !ReadJson(file, run).ok()) return read;
+  request.Clear();
+  request.set_request_id(run.request_id());
+  run.clear_request_id();
+  *request.mutable_run() = std::move(run);
+  return absl::OkStatus();
+}
+
 StoredJob LoadJob(const fs::path& folder) {
   StoredJob job;
   job.id = folder.filename().string();
-  job.damage = ReadJson(folder / kRequest, job.request);
+  job.damage = ReadRequest(folder / kRequest, job.request);
   if (!job.damage.ok()) return job;
   auto events = RecoverEvents(folder / kEvents);
   job.damage = events.status();

@@ -16,6 +16,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "eyebox/v1/job_service.pb.h"
 #include "eyebox/v1/service.pb.h"
 #include "service/server/store/beneath.h"
 
@@ -23,7 +24,7 @@ namespace eyebox::service {
 
 struct StoredJob {
   std::string id;  // "000001", "000002", ... in order of creation
-  v1::CreateRunRequest request;
+  v1::CreateJobRequest request;
   std::vector<v1::JobEvent> events;  // one or more, unless damaged
   absl::Status damage;               // why it could not be read
 };

@@ -29,6 +29,9 @@ inline constexpr NameRule kRecordingRule = {"a recording", "", 8, kIdCharacters}
 inline constexpr NameRule kArtifactRule = {"a file of a result", "", 1, kIdCharacters};
 inline constexpr NameRule kRigRule = {"a rig", "", 1, kRigCharacters};
 inline constexpr NameRule kCameraRule = {"a simulated camera", "sim:", 1, kIdCharacters};
+inline constexpr NameRule kPhotodiodeRule = {"a simulated photodiode", "sim:", 1, kIdCharacters};
+inline constexpr NameRule kTriggerRule = {"a simulated trigger", "sim:", 1, kIdCharacters};
+inline constexpr NameRule kLineRule = {"an input of a camera", "", 1, kIdCharacters};
 
 // What follows the prefix. `field` is the request's field, for example "rig.name".
 // Errors: InvalidArgument with the field (see BadField).

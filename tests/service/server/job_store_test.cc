@@ -32,7 +32,7 @@ class JobStoreTest : public testing::Test {
   }
   void CreateJob(const std::string& id) {
     ASSERT_TRUE(
-        store_->Create({id, RigRun("r-" + id), {EventNumber(1, v1::JOB_STATE_QUEUED)}, {}}).ok());
+        store_->Create({id, RigJob("r-" + id), {EventNumber(1, v1::JOB_STATE_QUEUED)}, {}}).ok());
   }
   std::filesystem::path state() const { return folder_.path() / "state"; }
   std::filesystem::path log() const { return state() / "jobs/000001/events.log"; }
@@ -51,7 +51,7 @@ TEST_F(JobStoreTest, JobsComeBackAsTheyWereOldestFirst) {
   ASSERT_EQ(jobs->size(), 2u);
   const StoredJob& first = jobs->front();
   EXPECT_EQ(first.id, "000001");
-  EXPECT_EQ(first.request.DebugString(), RigRun("r-000001").DebugString());
+  EXPECT_EQ(first.request.DebugString(), RigJob("r-000001").DebugString());
   ASSERT_EQ(first.events.size(), 2u);
   EXPECT_EQ(first.events[1].DebugString(), EventNumber(2, v1::JOB_STATE_RUNNING).DebugString());
 }

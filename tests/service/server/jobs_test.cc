@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "service/server/jobs/executor.h"
 #include "tests/service/server/manual_work.h"
 
 namespace eyebox::service {
@@ -40,7 +41,7 @@ class JobsTest : public testing::Test {
     Open(options);
   }
   int64_t Create(const std::string& request_id) {
-    const auto job = jobs_->Create(RigRun(request_id));
+    const auto job = jobs_->Create(RigJob(request_id));
     EXPECT_TRUE(job.ok()) << job.status();
     return *JobNumber("name", job->name());
   }
@@ -99,8 +100,8 @@ TEST_F(JobsTest, SameRequestGivesTheSameJob) {
 TEST_F(JobsTest, RequestIdOfAnotherRequestIsRefused) {
   OpenAndStart();
   Create("a");
-  v1::CreateRunRequest other = RigRun("a");
-  other.set_hdrp_cube_size(64);
+  v1::CreateJobRequest other = RigJob("a");
+  other.mutable_run()->set_hdrp_cube_size(64);
   const auto job = jobs_->Create(other);
   EXPECT_TRUE(absl::IsAlreadyExists(job.status()));
   EXPECT_THAT(std::string(job.status().message()), HasSubstr("jobs/000001"));
@@ -111,8 +112,8 @@ TEST_F(JobsTest, FullQueueRefusesMore) {
   Create("runs");
   work_->AwaitBegun(1);
   Create("waits");
-  EXPECT_TRUE(absl::IsResourceExhausted(jobs_->Create(RigRun("too-many")).status()));
-  EXPECT_TRUE(jobs_->Create(RigRun("waits")).ok());  // it is there already
+  EXPECT_TRUE(absl::IsResourceExhausted(jobs_->Create(RigJob("too-many")).status()));
+  EXPECT_TRUE(jobs_->Create(RigJob("waits")).ok());  // it is there already
 }
 
 TEST_F(JobsTest, ErrorOfTheWorkIsTheErrorOfTheJob) {
@@ -185,7 +186,7 @@ TEST_F(JobsTest, OrderlyStopInterruptsAndTheNextStartRunsAgain) {
   work_->AllowAll();
   stop.join();
   EXPECT_EQ(Latest(number).state(), v1::JOB_STATE_QUEUED);
-  EXPECT_TRUE(absl::IsUnavailable(jobs_->Create(RigRun("b")).status()));
+  EXPECT_TRUE(absl::IsUnavailable(jobs_->Create(RigJob("b")).status()));
 
   jobs_.reset();
   OpenAndStart();

@@ -30,23 +30,49 @@ OwnedFd MakeSocket(const std::filesystem::path& path, bool listening) {
 }
 
 TEST(ListenTest, UnixSocketIsItsPath) {
-  EXPECT_EQ(*SocketOf("unix:eyebox.sock"), "eyebox.sock");
-  EXPECT_EQ(*SocketOf("unix:/run/eyebox/eyebox.sock"), "/run/eyebox/eyebox.sock");
+  EXPECT_EQ(EndpointOf("unix:eyebox.sock")->socket, "eyebox.sock");
+  EXPECT_EQ(EndpointOf("unix:/run/eyebox/eyebox.sock")->ForGrpc(), "unix:/run/eyebox/eyebox.sock");
 }
 
-TEST(ListenTest, TcpIsRefusedUntilThereIsMutualTls) {
-  for (const char* address : {"localhost:50051", "0.0.0.0:50051", "[::]:50051", "dns:///host:1",
-                              "unix-abstract:name", "", "eyebox.sock"}) {
-    const auto socket = SocketOf(address);
-    EXPECT_TRUE(absl::IsUnimplemented(socket.status())) << address;
-    EXPECT_THAT(std::string(socket.status().message()), HasSubstr("unix:PATH"));
+TEST(ListenTest, TcpIsHostAndPort) {
+  for (const char* address :
+       {"localhost:50051", "0.0.0.0:50051", "[::]:50051", "lab-3.example.org:0", "[::1]:65535"}) {
+    const auto endpoint = EndpointOf(address);
+    ASSERT_TRUE(endpoint.ok()) << endpoint.status();
+    EXPECT_TRUE(endpoint->tcp);
+    EXPECT_EQ(endpoint->ForGrpc(), address);
   }
 }
 
+TEST(ListenTest, WhatIsNeitherIsRefused) {
+  for (const char* address :
+       {"", "eyebox.sock", "dns:///host:1", "unix-abstract:name", "host:", ":50051", "host:65536",
+        "host:-1", "host:+1", "host: 1", "host:1x", "[::1:1", "[]:1", "a b:1", "vsock:1:2",
+        "host:99999999999999999999", "::1:50051"}) {
+    const auto endpoint = EndpointOf(address);
+    EXPECT_TRUE(absl::IsInvalidArgument(endpoint.status())) << address;
+    EXPECT_THAT(std::string(endpoint.status().message()), HasSubstr("unix:"));
+  }
+}
+
+TEST(ListenTest, TcpIsRefusedWithoutMutualTls) {
+  const TemporaryFolder folder;
+  ManualWork work;
+  const ManualClock clock;
+  ServerOptions options;
+  options.listen = "127.0.0.1:0";
+  options.data = folder.path();
+  options.state = folder.path() / "state";
+  const absl::Status status = Server::Start(options, work.AsWork(), &clock).status();
+  EXPECT_TRUE(absl::IsInvalidArgument(status)) << status;
+  EXPECT_THAT(std::string(status.message()), HasSubstr("mutual TLS"));
+  EXPECT_FALSE(std::filesystem::exists(options.state)) << "refused before anything is made";
+}
+
 TEST(ListenTest, PathThatNoSocketCanHaveIsRefused) {
-  EXPECT_TRUE(absl::IsInvalidArgument(SocketOf("unix:").status()));
-  EXPECT_TRUE(SocketOf("unix:" + std::string(107, 'a')).ok());
-  EXPECT_TRUE(absl::IsInvalidArgument(SocketOf("unix:" + std::string(108, 'a')).status()));
+  EXPECT_TRUE(absl::IsInvalidArgument(EndpointOf("unix:").status()));
+  EXPECT_TRUE(EndpointOf("unix:" + std::string(107, 'a')).ok());
+  EXPECT_TRUE(absl::IsInvalidArgument(EndpointOf("unix:" + std::string(108, 'a')).status()));
 }
 
 TEST(ListenTest, SocketOfAKilledServerIsRemoved) {

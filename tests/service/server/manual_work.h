@@ -111,6 +111,13 @@ inline v1::CreateRunRequest RigRun(const std::string& request_id) {
   return request;
 }
 
+inline v1::CreateJobRequest RigJob(const std::string& request_id) {
+  v1::CreateJobRequest request;
+  request.set_request_id(request_id);
+  *request.mutable_run() = RigRun("");
+  return request;
+}
+
 // Waits without a clock: the table says when to look again.
 inline v1::Job AwaitJob(JobTable& table, int64_t number,
                         const std::function<bool(const v1::Job&)>& reached) {

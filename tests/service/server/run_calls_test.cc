@@ -1,8 +1,7 @@
 // CreateRun, GetJob, ListJobs, CancelJob over the socket.
 #include <gmock/gmock.h>
 
-#include "google/rpc/error_details.pb.h"
-#include "google/rpc/status.pb.h"
+#include "tests/service/server/hostile_names.h"
 #include "tests/service/server/server_fixture.h"
 
 namespace eyebox::service {
@@ -33,17 +32,6 @@ class RunCallsTest : public ServerFixture {
     return stub_->CancelJob(&context, request, job);
   }
 };
-
-// The field that the details of `status` name, empty if none.
-std::string ViolatedField(const grpc::Status& status) {
-  google::rpc::Status details;
-  if (!details.ParseFromString(status.error_details())) return "";
-  for (const auto& detail : details.details()) {
-    google::rpc::BadRequest bad;
-    if (detail.UnpackTo(&bad)) return bad.field_violations(0).field();
-  }
-  return "";
-}
 
 TEST_F(RunCallsTest, CreateReturnsAtOnceAndTheSameRequestGivesTheSameJob) {
   const v1::Job first = CreateOk("a");  // no step was allowed: the work cannot have ended

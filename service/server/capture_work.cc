@@ -117,9 +117,8 @@ v1::CaptureReply Reply(const capture::Reading& reading, int attempts, const std:
 
 absl::StatusOr<v1::CaptureReply> TakenBefore(const CaptureSession& session, int number,
                                              const CaptureSpec& spec) {
-  for (const capture::Reading& reading : session.Readings()) {
-    if (reading.number != number) continue;
-    if (reading.spec == spec) return Reply(reading, 0, "");
+  if (const auto reading = session.ReadingOf(number)) {
+    if (reading->spec == spec) return Reply(*reading, 0, "");
     return absl::AlreadyExistsError(
         Complaint("number", absl::StrCat(number, " was taken of another stimulus"),
                   absl::StrCat("go on with number ", session.Published() + 1)));

@@ -77,29 +77,39 @@ absl::Status CheckSamePlan(const CapturePlan& recorded, const CapturePlan& asked
       "resume without options of the plan, or begin another recording");
 }
 
-// The first frame of each, which is near enough for what readings are compared by.
-absl::StatusOr<std::vector<capture::Reading>> EarlierReadings(capture::RecordingReader& recording) {
+// Otherwise a kill cut it short.
+bool IsWhole(const capture::CaptureEntry& entry) { return entry.frame_count == entry.spec.repeats; }
+
+// What an earlier reading is for: readings are compared by the first frame, which is near enough
+// and fast to read; a script is told what it was told before, to the last bit.
+enum class ReadBy { kFirstFrame, kAllFrames };
+
+absl::StatusOr<std::vector<capture::Reading>> EarlierReadings(capture::RecordingReader& recording,
+                                                              ReadBy by) {
   std::vector<capture::Reading> readings;
   for (const capture::CaptureEntry& entry : recording.Captures()) {
     if (!entry.suspect.empty()) continue;
-    bool seen = false;
+    std::vector<capture::FrameMean> means;
     const absl::Status status = recording.VisitFrames(entry, [&](const Frame& frame) {
-      readings.push_back(
-          {.number = entry.number, .spec = entry.spec, .mean = capture::MeanOf(frame.view)});
-      seen = true;
-      return absl::CancelledError("one frame is enough");
+      means.push_back(capture::MeanOf(frame.view));
+      return by == ReadBy::kAllFrames ? absl::OkStatus()
+                                      : absl::CancelledError("one frame is enough");
     });
-    if (!seen) return status;
+    if (means.empty() || by == ReadBy::kAllFrames) EYEBOX_RETURN_IF_ERROR(status);
+    if (means.empty()) continue;
+    readings.push_back({.number = entry.number,
+                        .spec = entry.spec,
+                        .mean = by == ReadBy::kAllFrames ? capture::MeanOf(means) : means.front()});
   }
   return readings;
 }
 
 // A simulated headset counts its presentations, a replay goes through its captures: so they stand
-// where they stood.
+// where they stood. A capture that was cut short is presented when it is taken again.
 absl::Status CatchUp(capture::Rig& rig, const capture::RecordingReader& recording) {
   if (MeasuresWithDevice(rig)) return absl::OkStatus();
   for (const capture::CaptureEntry& entry : recording.Captures()) {
-    EYEBOX_RETURN_IF_ERROR(rig.presenter->Present(entry.spec));
+    if (IsWhole(entry)) EYEBOX_RETURN_IF_ERROR(rig.presenter->Present(entry.spec));
   }
   return absl::OkStatus();
 }
@@ -143,7 +153,7 @@ absl::StatusOr<capture::RunReport> ResumePlan(capture::Rig& rig,
   const CapturePlan left = capture::RemainingCaptures(header.plan, reader->Captures());
   if (left.captures.empty()) return capture::RunReport{};
   capture::RunOptions options = OptionsFor(rig, recording, watcher, settle);
-  EYEBOX_ASSIGN_OR_RETURN(options.earlier, EarlierReadings(*reader));
+  EYEBOX_ASSIGN_OR_RETURN(options.earlier, EarlierReadings(*reader, ReadBy::kFirstFrame));
   EYEBOX_RETURN_IF_ERROR(CatchUp(rig, *reader));
   EYEBOX_ASSIGN_OR_RETURN(const auto writer, capture::RecordingWriter::Resume(recording));
   return capture::RunPlan(rig, left, *writer, options);
@@ -163,7 +173,10 @@ absl::StatusOr<std::unique_ptr<CaptureSession>> CaptureSession::Resume(
   EYEBOX_RETURN_IF_ERROR(capture::RecoverRecording(recording).status());
   EYEBOX_ASSIGN_OR_RETURN(const auto reader, capture::RecordingReader::Open(recording));
   EYEBOX_RETURN_IF_ERROR(CheckSameRig(reader->Header(), rig, recording.string()));
-  EYEBOX_ASSIGN_OR_RETURN(session->readings_, EarlierReadings(*reader));
+  EYEBOX_ASSIGN_OR_RETURN(session->readings_, EarlierReadings(*reader, ReadBy::kAllFrames));
+  for (const capture::CaptureEntry& entry : reader->Captures()) {
+    if (IsWhole(entry)) session->recorded_.push_back(entry.number);
+  }
   EYEBOX_RETURN_IF_ERROR(CatchUp(rig, *reader));
   EYEBOX_ASSIGN_OR_RETURN(session->writer_, capture::RecordingWriter::Resume(recording));
   return session;
@@ -181,9 +194,22 @@ absl::StatusOr<capture::CaptureFigures> CaptureSession::Take(const CaptureSpec& 
   };
   const absl::Status run = capture::RunPlan(rig_, {{spec}}, *writer_, options).status();
   // It is on disk, whatever came afterwards.
-  if (taken) readings_.push_back(taken->reading);
+  if (taken) {
+    readings_.push_back(taken->reading);
+    recorded_.push_back(taken->reading.number);
+  }
   EYEBOX_RETURN_IF_ERROR(run);
+  taken->reading.number = Published();
   return *std::move(taken);
+}
+
+std::optional<capture::Reading> CaptureSession::ReadingOf(int number) const {
+  if (number < 1 || number > Published()) return std::nullopt;
+  const auto found = std::ranges::find(readings_, recorded_[number - 1], &capture::Reading::number);
+  if (found == readings_.end()) return std::nullopt;
+  capture::Reading reading = *found;
+  reading.number = number;
+  return reading;
 }
 
 }  // namespace eyebox::service

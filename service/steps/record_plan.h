@@ -49,10 +49,11 @@ class CaptureSession {
   static absl::StatusOr<std::unique_ptr<CaptureSession>> Resume(
       capture::Rig& rig, const std::filesystem::path& recording, const Settle& settle = {});
 
-  // Captures on stable storage, suspect ones included.
-  int Published() const { return writer_->PublishedCount(); }
-  // What they read, but for suspect ones; of earlier sessions as the first frame does.
-  const std::vector<capture::Reading>& Readings() const { return readings_; }
+  // Whole captures on stable storage, suspect ones included. Captures of a session are counted by
+  // these: one that a kill cut short stays in the recording and is taken again under its number.
+  int Published() const { return static_cast<int>(recorded_.size()); }
+  // What one of them read; nothing if it is suspect.
+  std::optional<capture::Reading> ReadingOf(int number) const;
 
   // The next capture, on stable storage when this returns. Errors: those of RunPlan().
   absl::StatusOr<capture::CaptureFigures> Take(const CaptureSpec& spec, const Watcher& watcher);
@@ -65,7 +66,8 @@ class CaptureSession {
   const std::filesystem::path recording_;
   const Settle settle_;
   std::unique_ptr<capture::RecordingWriter> writer_;
-  std::vector<capture::Reading> readings_;
+  std::vector<capture::Reading> readings_;  // by their numbers in the recording
+  std::vector<int> recorded_;  // number in the recording of each capture of the session
 };
 
 }  // namespace eyebox::service

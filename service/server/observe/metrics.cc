@@ -3,6 +3,7 @@
 #include <prometheus/collectable.h>
 #include <prometheus/counter.h>
 #include <prometheus/exposer.h>
+#include <prometheus/gauge.h>
 #include <prometheus/histogram.h>
 #include <prometheus/registry.h>
 #include <prometheus/text_serializer.h>
@@ -67,6 +68,11 @@ struct Metrics::Parts {
                                                            .Name("eyebox_call_seconds")
                                                            .Help("How long calls took")
                                                            .Register(*registry);
+  prometheus::Gauge& open = prometheus::BuildGauge()
+                                .Name("eyebox_calls_open")
+                                .Help("Calls under way, streams included")
+                                .Register(*registry)
+                                .Add({});
   std::unique_ptr<prometheus::Exposer> exposer;  // last: it reads the others
 };
 
@@ -79,6 +85,9 @@ void Metrics::CountCall(std::string_view method, std::string_view code, double s
   parts_->calls.Add({{"method", name}, {"code", std::string(code)}}).Increment();
   parts_->latency.Add({{"method", name}}, kLatencies_s).Observe(seconds);
 }
+
+void Metrics::CallOpened() { parts_->open.Increment(); }
+void Metrics::CallClosed() { parts_->open.Decrement(); }
 
 absl::StatusOr<int> Metrics::Expose(std::string_view address) {
   const auto endpoint = EndpointOf(address);

@@ -30,6 +30,10 @@ class Metrics {
   // `method` is one of ours, never a client's words; `code` a canonical name.
   void CountCall(std::string_view method, std::string_view code, double seconds);
 
+  // A call began, or is gone with all that it held.
+  void CallOpened();
+  void CallClosed();
+
   // Serves /metrics on `address`, 127.0.0.1:PORT, [::1]:PORT or localhost:PORT; gives the port.
   // Errors: InvalidArgument (not loopback), Unavailable (port taken).
   absl::StatusOr<int> Expose(std::string_view address);

@@ -25,7 +25,10 @@ std::string NewRequestId() {
 class CallLog final : public grpc::experimental::Interceptor {
  public:
   CallLog(const char* method, ServerLog* log, Metrics* metrics, const Clock* clock)
-      : method_(method), log_(log), metrics_(metrics), clock_(clock) {}
+      : method_(method), log_(log), metrics_(metrics), clock_(clock) {
+    metrics_->CallOpened();
+  }
+  ~CallLog() override { metrics_->CallClosed(); }
 
   void Intercept(grpc::experimental::InterceptorBatchMethods* methods) override {
     if (methods->QueryInterceptionHookPoint(InterceptionHookPoints::POST_RECV_INITIAL_METADATA)) {

@@ -87,6 +87,7 @@ bool IsServing(const ServedEyebox& server) {
   // answer, field 1 as a varint, is SERVING.
   grpc::GenericStub stub(server.Connect());
   grpc::ClientContext context;
+  context.set_wait_for_ready(true);  // the server may still be busy with connections that are gone
   context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(60));
   grpc::CompletionQueue queue;
   const grpc::Slice nothing;

@@ -76,17 +76,6 @@ absl::Status CheckDisks(const PlanOptions& options) {
                   "give a drive value above 0 and up to 1");
 }
 
-// Fisher & Yates.
-std::vector<int> ShuffledLevels(int levels, uint64_t seed) {
-  std::vector<int> order(static_cast<size_t>(levels));
-  std::iota(order.begin(), order.end(), 0);
-  RandomStream random({seed, kLevelOrderStream});
-  for (size_t left = order.size(); left > 1; --left) {
-    std::swap(order[left - 1], order[random.Below(left)]);
-  }
-  return order;
-}
-
 class PlanBuilder {
  public:
   explicit PlanBuilder(const PlanOptions& options) : options_(options) {}
@@ -174,6 +163,16 @@ class PlanBuilder {
 };
 
 }  // namespace
+
+std::vector<int> ShuffledLevels(int levels, uint64_t seed) {
+  std::vector<int> order(static_cast<size_t>(levels));
+  std::iota(order.begin(), order.end(), 0);
+  RandomStream random({seed, kLevelOrderStream});
+  for (size_t left = order.size(); left > 1; --left) {
+    std::swap(order[left - 1], order[random.Below(left)]);
+  }
+  return order;
+}
 
 absl::Status PlanOptions::Validate() const {
   EYEBOX_RETURN_IF_ERROR(CheckCount("levels", levels, 2, 4096));

@@ -53,6 +53,9 @@ struct PlanOptions {
 // Errors: those of Validate().
 absl::StatusOr<CapturePlan> MakeGreyPlan(const PlanOptions& options);
 
+// 0 to levels - 1 in the order of such a plan (Fisher & Yates).
+std::vector<int> ShuffledLevels(int levels, uint64_t seed);
+
 }  // namespace eyebox::capture
 
 #endif  // EYEBOX_CAPTURE_PLAN_H_

@@ -12,6 +12,7 @@
 #include "capture/base/clock.h"
 #include "capture/base/status.h"
 #include "capture/plan.h"
+#include "capture/recording/plan_file.h"
 #include "eyebox/v1/capture.pb.h"
 #include "service/cli/asking_presenter.h"
 #include "service/cli/command.h"
@@ -31,6 +32,7 @@ struct Options {
   std::string rig;
   std::string out;
   capture::PlanOptions plan = {.reference_every = kReferenceEvery};
+  std::string plan_file;  // instead of `plan`
   std::vector<CLI::Option*> plan_options;
   capture::SettleOptions settle;
   bool manual = false;
@@ -52,13 +54,21 @@ absl::StatusOr<capture::Rig> OpenRigOf(const Options& options, const Watcher& wa
   return rig;
 }
 
+absl::StatusOr<CapturePlan> PlanOf(const Options& options) {
+  if (options.plan_file.empty()) return capture::MakeGreyPlan(options.plan);
+  if (AnyGiven(options.plan_options)) {
+    return BadInput("--plan", "does not go with options that make a plan", "leave either out");
+  }
+  return capture::ReadPlanFile(options.plan_file);
+}
+
 absl::StatusOr<capture::RunReport> Capture(const Options& options, const Watcher& watcher) {
-  EYEBOX_ASSIGN_OR_RETURN(const CapturePlan plan, capture::MakeGreyPlan(options.plan));
+  EYEBOX_ASSIGN_OR_RETURN(const CapturePlan plan, PlanOf(options));
   EYEBOX_RETURN_IF_ERROR(options.settle.Validate());
   EYEBOX_ASSIGN_OR_RETURN(capture::Rig rig, OpenRigOf(options, watcher));
   if (!options.resume) return RecordPlan(rig, plan, options.out, watcher, options.settle);
   // Without options of the plan the recording knows it.
-  const auto asked = AnyGiven(options.plan_options) ? std::optional(plan) : std::nullopt;
+  const auto asked = AnyGiven(options.plan_options) || !options.plan_file.empty() ? std::optional(plan) : std::nullopt;
   return ResumePlan(rig, asked, options.out, watcher, options.settle);
 }
 
@@ -106,6 +116,7 @@ void Bind(CLI::App& command, Options& options) {
       ->required();
   command.add_option("--out", options.out, "The recording; must not exist without --resume")
       ->required();
+  command.add_option("--plan", options.plan_file, "A capture plan, as eyebox plan --out writes it");
   options.plan_options = BindPlan(command, options.plan);
   options.plan_options.push_back(
       command.add_option("--seed", options.plan.seed, "Of the order of levels")

@@ -58,6 +58,8 @@ void AddFit(CLI::App& app, Work& work);
 void AddCube(CLI::App& app, Work& work);
 void AddPredict(CLI::App& app, Work& work);
 void AddKnots(CLI::App& app, Work& work);
+void AddPlan(CLI::App& app, Work& work);
+void AddTradeoff(CLI::App& app, Work& work);
 void AddPreflight(CLI::App& app, Work& work);
 void AddRun(CLI::App& app, Work& work);
 void AddReplay(CLI::App& app, Work& work);

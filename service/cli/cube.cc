@@ -1,11 +1,9 @@
-#include <charconv>
 #include <cstdio>
 #include <iostream>
 #include <iterator>
 #include <map>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "capture/base/file.h"
@@ -13,6 +11,7 @@
 #include "service/cli/colour_output.h"
 #include "service/cli/command.h"
 #include "service/cli/cube_modes.h"
+#include "service/cli/share.h"
 #include "service/cli/terminal.h"
 #include "service/colour.h"
 #include "service/result_json.h"
@@ -66,19 +65,6 @@ const std::map<std::string, fit::ColourGamut> kGamuts = {{"native", fit::ColourG
                                                          {"p3", fit::ColourGamut::kP3}};
 const std::map<std::string, fit::WhiteScale> kScales = {{"colours", fit::WhiteScale::kEveryColour},
                                                         {"white", fit::WhiteScale::kWhite}};
-
-// "2%" or "0.02".
-absl::StatusOr<double> ShareOf(std::string_view text) {
-  std::string_view digits = text;
-  const bool is_percent = digits.ends_with('%');
-  if (is_percent) digits.remove_suffix(1);
-  double value = 0;
-  const char* const end = digits.data() + digits.size();
-  const auto [stop, error] = std::from_chars(digits.data(), end, value);
-  if (error == std::errc() && stop == end) return is_percent ? value / 100 : value;
-  return BadInput("--tolerance", "\"" + std::string(text) + "\" is no number",
-                  "give a share such as 0.02 or 2%");
-}
 
 absl::StatusOr<std::string> ReadFit(const std::string& file) {
   constexpr size_t kLargestFitBytes = size_t{64} << 20;
@@ -135,7 +121,7 @@ absl::Status DesigningForField(const Options& options) {
   request.recording = options.modes.recording;
   request.field = options.modes.field;
   request.out = options.out;
-  EYEBOX_ASSIGN_OR_RETURN(request.design.tolerance, ShareOf(options.modes.tolerance));
+  EYEBOX_ASSIGN_OR_RETURN(request.design.tolerance, ShareOf("--tolerance", options.modes.tolerance));
   request.design.target = options.request.target;
   request.design.size = options.size.value_or(kUsualSize);
   request.design.design = options.request.design;

@@ -32,6 +32,8 @@ void AddAllCommands(CLI::App& app, Work& work) {
   AddCube(app, work);
   AddPredict(app, work);
   AddKnots(app, work);
+  AddPlan(app, work);
+  AddTradeoff(app, work);
   AddVerify(app, work);
   AddVerifyFiles(app, work);
   AddRecover(app, work);

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 #include <utility>
 
+#include "service/report/alone.h"
 #include "service/report/axis.h"
-#include "service/report/style.h"
 #include "service/report/svg.h"
 #include "service/report/text.h"
 
@@ -94,14 +93,6 @@ std::string DrawGlare(const GlareFigureInput& input) {
   return std::move(svg).Finish();
 }
 
-std::string DrawGlareAlone(const GlareFigureInput& input) {
-  constexpr std::string_view kOpening = "<svg ";
-  std::string svg = DrawGlare(input);
-  svg.insert(svg.find('\n') + 1, "<style>" + std::string(kStyle) +
-                                     "</style>\n<rect width=\"100%\" height=\"100%\" "
-                                     "fill=\"#fff\"/>\n");
-  svg.insert(svg.find(kOpening) + kOpening.size(), "xmlns=\"http://www.w3.org/2000/svg\" ");
-  return svg;
-}
+std::string DrawGlareAlone(const GlareFigureInput& input) { return AloneInFile(DrawGlare(input)); }
 
 }  // namespace eyebox::service::report

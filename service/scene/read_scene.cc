@@ -106,6 +106,21 @@ absl::Status LookAt(const v1::Scene& proto, const SceneField& field, const Scene
                       "turn its normal, or move eye_position_m");
 }
 
+absl::Status ReadPatchField(const v1::ScenePatch& source, const SceneField& field,
+                            SceneInput& input) {
+  PatchField used;
+  if (source.has_within_deg()) {
+    EYEBOX_ASSIGN_OR_RETURN(used.within_deg,
+                            field.Of("within_deg").Number(source.within_deg(), {0, 90, true}));
+  }
+  if (source.has_diameter_deg()) {
+    EYEBOX_ASSIGN_OR_RETURN(used.diameter_deg,
+                            field.Of("diameter_deg").Number(source.diameter_deg(), {0, 180, true}));
+  }
+  input.patch_fields.push_back(used);
+  return absl::OkStatus();
+}
+
 absl::Status ReadPatch(const v1::Scene& proto, int index, const SceneField& field,
                        SceneInput& input) {
   const v1::ScenePatch& source = proto.patches(index);
@@ -125,7 +140,7 @@ absl::Status ReadPatch(const v1::Scene& proto, int index, const SceneField& fiel
   }
   EYEBOX_RETURN_IF_ERROR(LookAt(proto, field, input, patch));
   input.patches.push_back(patch);
-  return absl::OkStatus();
+  return ReadPatchField(source, field, input);
 }
 
 }  // namespace

@@ -21,6 +21,12 @@ struct MixedReality {
   bool match_exposure = false;
 };
 
+// What of the field a patch uses, visual angles.
+struct PatchField {
+  std::optional<double> within_deg;    // of the optical axis; empty: anywhere
+  std::optional<double> diameter_deg;  // on black; empty: it fills the field
+};
+
 struct SceneInput {
   std::string file;
   optics::Scene scene;  // with the rendering constant of the file, if it has one
@@ -29,6 +35,7 @@ struct SceneInput {
   std::vector<std::string> light_names;
   std::vector<std::string> patch_names;
   std::vector<optics::Patch> patches;  // in the file's order
+  std::vector<PatchField> patch_fields;
   std::filesystem::path cube;          // empty: none
   std::optional<MixedReality> mixed_reality;
 };

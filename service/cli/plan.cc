@@ -1,0 +1,89 @@
+#include <cstdio>
+#include <string>
+
+#include "capture/base/status.h"
+#include "service/cli/command.h"
+#include "service/cli/rig_source.h"
+#include "service/cli/share.h"
+#include "service/cli/terminal.h"
+#include "service/planner/plan_measurement.h"
+
+namespace eyebox::service::cli {
+namespace {
+
+constexpr double kPercent = 100;
+
+struct Options {
+  std::string rig;
+  std::string scene;
+  std::string tolerance = "2%";
+  std::string budget;
+  std::string out;
+  PlanRequest request;
+  bool json = false;
+};
+
+void PrintPlan(const v1::MeasurementPlan& plan) {
+  for (const v1::PlanDecision& decision : plan.decisions()) {
+    std::printf("%-16s %-48s %s%s\n", decision.about().c_str(), decision.choice().c_str(),
+                decision.left_out() ? "left out: " : "", decision.reason().c_str());
+  }
+  std::printf("95 %% of errors within +- %.3g %% (tolerance %.3g %%), %.4g s of captures: %d "
+              "captures, %d frames\n",
+              kPercent * plan.parameters(1).value(), kPercent * plan.parameters(0).value(),
+              plan.parameters(3).value(), plan.captures(), plan.frames());
+}
+
+absl::Status Run(const Options& options) {
+  PlanRequest request = options.request;
+  request.scene = options.scene;
+  request.out = options.out;
+  EYEBOX_ASSIGN_OR_RETURN(request.rig, RigOf(options.rig));
+  EYEBOX_ASSIGN_OR_RETURN(request.tolerance, ShareOf("--tolerance", options.tolerance));
+  if (!options.budget.empty()) {
+    EYEBOX_ASSIGN_OR_RETURN(request.budget_s, SecondsOf("--budget", options.budget));
+  }
+  EYEBOX_ASSIGN_OR_RETURN(const v1::MeasurementPlan plan,
+                          PlanMeasurement(request, TerminalWatcher()));
+  PrintWarnings(plan.warnings());
+  if (options.json) return PrintJson(plan);
+  PrintPlan(plan);
+  if (!plan.plan_file().empty()) {
+    std::printf("Wrote %s; capture it with: eyebox capture RIG --plan %s --out RECORDING\n",
+                plan.plan_file().c_str(), plan.plan_file().c_str());
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+void AddPlan(CLI::App& app, Work& work) {
+  AddCommand<Options>(
+      app, work, "plan",
+      "The cheapest measurement that keeps a tolerance for a scene, and why each part is needed",
+      "eyebox plan --scene room.textproto --tolerance 2% sim:rift-s-like --out plan.textproto",
+      [](CLI::App& command, Options& options) {
+        command.add_option("rig", options.rig, "Rig file, or the URI of a simulated camera")
+            ->required();
+        command.add_option("--scene", options.scene, "Scene file, as eyebox predict takes it")
+            ->required();
+        command
+            .add_option("--tolerance", options.tolerance,
+                        "Of the luminance: 95 % of relative errors are to lie within it")
+            ->capture_default_str();
+        command.add_option("--budget", options.budget, "Time for captures, such as 120s");
+        command.add_option("--out", options.out, "Write the capture plan there (.textproto)");
+        command
+            .add_option("--stimulus-seconds", options.request.costs.stimulus_s,
+                        "Until a new stimulus is shown and steady")
+            ->capture_default_str();
+        command
+            .add_option("--frame-seconds", options.request.costs.frame_s,
+                        "Of a frame, beside its exposure")
+            ->capture_default_str();
+        command.add_flag("--json", options.json, "Print the result message");
+      },
+      Run);
+}
+
+}  // namespace eyebox::service::cli

@@ -1,0 +1,165 @@
+#include <utility>
+
+#include "absl/strings/str_format.h"
+#include "capture/base/status.h"
+#include "service/planner/design_levels.h"
+#include "service/planner/tradeoff.h"
+
+namespace eyebox::service {
+namespace {
+
+constexpr int kUsualLevels = 17;
+constexpr int kUsualFrames = 4;
+constexpr int kUsualTable = 64;
+constexpr double kUsualDiskDeg = 8;
+
+class CaseList {
+ public:
+  explicit CaseList(size_t exposures) : exposures_(exposures) {
+    usual_.levels = Even(kUsualLevels, kUsualFrames);
+    usual_.disk_frames = kUsualFrames;
+    usual_.table_size = kUsualTable;
+    need_.disk_deg = kUsualDiskDeg;
+  }
+
+  std::vector<int> Frames(int count) const { return std::vector<int>(exposures_, count); }
+  std::vector<LevelFrames> Even(int levels, int frames) const {
+    return EvenLevels(levels, Frames(frames));
+  }
+
+  template <typename Change>
+  void Add(std::string lever, std::string name, const Change& change) {
+    TradeoffCase added{std::move(lever), usual_, need_};
+    added.setting.name = std::move(name);
+    change(added.setting, added.need);
+    cases_.push_back(std::move(added));
+  }
+
+  std::vector<TradeoffCase> Finish() { return std::move(cases_); }
+
+ private:
+  size_t exposures_;
+  Setting usual_;
+  Need need_;
+  std::vector<TradeoffCase> cases_;
+};
+
+void AddCounts(CaseList& list) {
+  list.Add("baseline", "baseline", [](Setting&, Need&) {});
+  for (const int frames : {1, 2, 8, 16}) {
+    list.Add("frames per level", absl::StrFormat("%d frames", frames),
+             [&](Setting& s, Need&) { s.levels = list.Even(kUsualLevels, frames); });
+  }
+  for (const int levels : {5, 9, 33}) {
+    list.Add("levels", absl::StrFormat("%d levels", levels),
+             [&](Setting& s, Need&) { s.levels = list.Even(levels, kUsualFrames); });
+  }
+  for (const int frames : {2, 4, 16}) {
+    list.Add("darks and flats", absl::StrFormat("%d of each", frames),
+             [&](Setting& s, Need&) { s.calibration_frames = frames; });
+  }
+}
+
+void AddExposures(CaseList& list, size_t exposures) {
+  for (size_t count = 1; count < exposures; ++count) {
+    list.Add("exposures", absl::StrFormat("shortest %d", count), [&](Setting& s, Need&) {
+      for (LevelFrames& level : s.levels) {
+        for (size_t k = count; k < exposures; ++k) level.frames[k] = 0;
+      }
+    });
+  }
+}
+
+void AddModels(CaseList& list) {
+  using fit::ActivationModel;
+  for (const ActivationModel model : {ActivationModel::kPowerOffset, ActivationModel::kSrgbLike,
+                                      ActivationModel::kMonotoneSpline}) {
+    list.Add("model", std::string(NameOf(model)), [&](Setting& s, Need&) { s.model = model; });
+  }
+  for (const int size : {16, 32, 129}) {
+    list.Add("table size", absl::StrFormat("%d knots", size),
+             [&](Setting& s, Need&) { s.table_size = size; });
+  }
+}
+
+void AddFields(CaseList& list) {
+  list.Add("field", "no map", [](Setting& s, Need&) { s.tier = FieldTier::kNone; });
+  for (const int order : {2, 6}) {
+    list.Add("field", absl::StrFormat("smooth, order %d", order),
+             [&](Setting& s, Need&) { s.tier_size = order; });
+  }
+  for (const int side : {1, 2, 4, 8}) {
+    list.Add("binning", absl::StrFormat("map of %d x %d px", side, side), [&](Setting& s, Need&) {
+      s.tier = FieldTier::kBlocks;
+      s.tier_size = side;
+    });
+  }
+  for (const double radius_deg : {2.0, 5.0, 10.0}) {
+    list.Add("region", absl::StrFormat("no map, within %g deg", radius_deg),
+             [&](Setting& s, Need& need) {
+               s.tier = FieldTier::kNone;
+               need.radius_deg = radius_deg;
+             });
+  }
+}
+
+void AddGlare(CaseList& list) {
+  list.Add("scatter", "glare left in", [](Setting& s, Need&) { s.disk_frames = 0; });
+  list.Add("scatter", "no disk looked at", [](Setting& s, Need& need) {
+    s.disk_frames = 0;
+    need.disk_deg = 0;
+  });
+  for (const int frames : {1, 16}) {
+    list.Add("scatter", absl::StrFormat("%d frames of the disk", frames),
+             [&](Setting& s, Need&) { s.disk_frames = frames; });
+  }
+}
+
+void AddTogether(CaseList& list) {
+  for (const int levels : {5, 9}) {
+    for (const int frames : {1, 2, 8}) {
+      for (const bool map : {false, true}) {
+        list.Add("together",
+                 absl::StrFormat("%d levels, %d frames, %s", levels, frames,
+                                 map ? "map of 2 x 2 px" : "smooth, order 4"),
+                 [&](Setting& s, Need&) {
+                   s.levels = list.Even(levels, frames);
+                   if (map) {
+                     s.tier = FieldTier::kBlocks;
+                     s.tier_size = 2;
+                   }
+                   s.disk_frames = frames;
+                   s.calibration_frames = frames == 8 ? 16 : 4;
+                 });
+      }
+    }
+  }
+}
+
+absl::Status AddDesigned(const Pilot& pilot, const Costs& costs, CaseList& list) {
+  for (const int frames : {1, 2, 4, 8, 16}) {
+    const double seconds = LevelSeconds(list.Even(kUsualLevels, frames), pilot.exposures_s, costs);
+    EYEBOX_ASSIGN_OR_RETURN(
+        const DesignedLevels designed,
+        DesignLevels(pilot, {}, fit::ErrorAtU::kDeparture, seconds / 3, costs, 8));
+    list.Add("designed levels", absl::StrFormat("a third of the time of %d frames", frames),
+             [&](Setting& s, Need&) { s.levels = designed.levels; });
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<std::vector<TradeoffCase>> UsualCases(const Pilot& pilot, const Costs& costs) {
+  CaseList list(pilot.exposures_s.size());
+  AddCounts(list);
+  AddExposures(list, pilot.exposures_s.size());
+  AddModels(list);
+  AddFields(list);
+  AddGlare(list);
+  AddTogether(list);
+  EYEBOX_RETURN_IF_ERROR(AddDesigned(pilot, costs, list));
+  return list.Finish();
+}
+
+}  // namespace eyebox::service

@@ -33,10 +33,11 @@ std::vector<double> ErrorVariances(const ActivationFit& fit, ErrorAtU error,
                                    std::span<const double> u);
 
 // Shares of the time, [candidates], summing to 1, that make the mean of the error's variance over
-// `u` smallest for the time spent (I-optimality under cost), for an activation like that of `fit`: the multiplicative algorithm (Silvey, Titterington & Torsney 1978), whose fixed point is
-// the optimum. `efficiency`: a lower bound of the optimal variance over that of the result, from
-// the equivalence theorem. Errors: InvalidArgument (a sigma or time not above 0);
-// FailedPrecondition (the candidates do not determine the activation).
+// `u` smallest for the time spent (I-optimality under cost), for an activation like that of `fit`:
+// the multiplicative algorithm (Silvey, Titterington & Torsney 1978), whose fixed point is the
+// optimum. `efficiency`: a lower bound of the optimal variance over that of the result, from the
+// equivalence theorem. Errors: InvalidArgument (a sigma or time not above 0); FailedPrecondition
+// (the candidates do not determine the activation).
 struct LevelDesign {
   std::vector<double> shares;
   double variance_s = 0;  // mean variance times the time in seconds

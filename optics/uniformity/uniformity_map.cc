@@ -61,13 +61,30 @@ MeasuredImage RatioToReference(const MeasuredImage& luminance, const Disk& disk,
   return ratio;
 }
 
-// Both kinds of smooth model, at their best size or the one asked for; the one that predicts better
-// first. With a size given, that kind is taken.
+// The size that predicts best balances what it cannot follow against noise, and its sigmas know of
+// the noise alone. So a model a little larger is taken, whose bias is small beside them: with these
+// steps the stated intervals hold (tests/tools/coverage).
+constexpr size_t kOrdersAboveBest = 2;
+constexpr size_t kIntervalStepsAboveBest = 1;
+
+int SizeAbove(const std::vector<CrossValidated>& tried, const CrossValidated& best, size_t steps) {
+  for (size_t i = 0; i < tried.size(); ++i) {
+    if (tried[i].size == best.size) return tried[std::min(i + steps, tried.size() - 1)].size;
+  }
+  return best.size;
+}
+
+// Both kinds of smooth model, of the size asked for, else a little above their best one; the kind
+// that predicts better first. With a size given, that kind is taken.
 absl::Status FitSmoothModels(const MeasuredImage& luminance, const UniformityOptions& options,
                              const PixelPoint& reference, UniformityMap& map) {
   EYEBOX_ASSIGN_OR_RETURN(map.choice, CrossValidate(luminance));
-  const int order = options.polynomial_order.value_or(map.choice.polynomial.size);
-  const int intervals = options.spline_intervals.value_or(map.choice.spline.size);
+  const int order = options.polynomial_order.value_or(
+      SizeAbove(map.choice.polynomials, map.choice.polynomial, kOrdersAboveBest));
+  const int intervals = options.spline_intervals.value_or(
+      SizeAbove(map.choice.splines, map.choice.spline, kIntervalStepsAboveBest));
+  map.polynomial_order = order;
+  map.spline_intervals = intervals;
   EYEBOX_ASSIGN_OR_RETURN(const SmoothField polynomial,
                           FitSmoothField(luminance, FieldModel::kPolynomial, order));
   EYEBOX_ASSIGN_OR_RETURN(map.smooth, NormaliseAt(polynomial, reference.x_px, reference.y_px));

@@ -18,7 +18,8 @@ struct UniformityOptions {
   std::optional<PixelPoint> reference;      // image centre unless given
   double reference_radius_fraction = 0.02;  // of the smaller side of the image
   double patch_radius_fraction = 0.02;      // of the 9- and 13-point patches, likewise
-  // Of the smooth models; those that predict best (see cross_validate.h) unless given.
+  // Of the smooth models; unless given, the second order and the next number of intervals above
+  // those that predict best (see cross_validate.h).
   std::optional<int> polynomial_order;
   std::optional<int> spline_intervals;
 };
@@ -46,6 +47,8 @@ struct UniformityMap {
   double reference_luminance_sigma = 0;    // of noise; the scale's is common and cancels in g
   MeasuredImage raw;                       // g = L(x) / L(reference), unit "1"
   FieldChoice choice;                      // how the smooth models were chosen
+  int polynomial_order = 0;                // of the smooth models that were fitted
+  int spline_intervals = 0;                // 0 where no spline is determined
   SmoothField smooth;                      // 1 at the reference point: the one that predicts better
   std::optional<SmoothField> alternative;  // likewise, of the other kind, where it is determined
   AreaUniformity area;

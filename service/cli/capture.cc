@@ -68,7 +68,9 @@ absl::StatusOr<capture::RunReport> Capture(const Options& options, const Watcher
   EYEBOX_ASSIGN_OR_RETURN(capture::Rig rig, OpenRigOf(options, watcher));
   if (!options.resume) return RecordPlan(rig, plan, options.out, watcher, options.settle);
   // Without options of the plan the recording knows it.
-  const auto asked = AnyGiven(options.plan_options) || !options.plan_file.empty() ? std::optional(plan) : std::nullopt;
+  const auto asked = AnyGiven(options.plan_options) || !options.plan_file.empty()
+                         ? std::optional(plan)
+                         : std::nullopt;
   return ResumePlan(rig, asked, options.out, watcher, options.settle);
 }
 

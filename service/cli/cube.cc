@@ -121,7 +121,8 @@ absl::Status DesigningForField(const Options& options) {
   request.recording = options.modes.recording;
   request.field = options.modes.field;
   request.out = options.out;
-  EYEBOX_ASSIGN_OR_RETURN(request.design.tolerance, ShareOf("--tolerance", options.modes.tolerance));
+  EYEBOX_ASSIGN_OR_RETURN(request.design.tolerance,
+                          ShareOf("--tolerance", options.modes.tolerance));
   request.design.target = options.request.target;
   request.design.size = options.size.value_or(kUsualSize);
   request.design.design = options.request.design;

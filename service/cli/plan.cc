@@ -28,10 +28,11 @@ void PrintPlan(const v1::MeasurementPlan& plan) {
     std::printf("%-16s %-48s %s%s\n", decision.about().c_str(), decision.choice().c_str(),
                 decision.left_out() ? "left out: " : "", decision.reason().c_str());
   }
-  std::printf("95 %% of errors within +- %.3g %% (tolerance %.3g %%), %.4g s of captures: %d "
-              "captures, %d frames\n",
-              kPercent * plan.parameters(1).value(), kPercent * plan.parameters(0).value(),
-              plan.parameters(3).value(), plan.captures(), plan.frames());
+  std::printf(
+      "95 %% of errors within +- %.3g %% (tolerance %.3g %%), %.4g s of captures: %d "
+      "captures, %d frames\n",
+      kPercent * plan.parameters(1).value(), kPercent * plan.parameters(0).value(),
+      plan.parameters(3).value(), plan.captures(), plan.frames());
 }
 
 absl::Status Run(const Options& options) {

@@ -37,8 +37,7 @@ absl::Status Run(const Options& options) {
   TradeoffRequest request = options.request;
   request.out = options.out;
   EYEBOX_ASSIGN_OR_RETURN(request.rig, RigOf(options.rig));
-  EYEBOX_ASSIGN_OR_RETURN(const v1::TradeoffResult result,
-                          RunTradeoff(request, TerminalWatcher()));
+  EYEBOX_ASSIGN_OR_RETURN(const v1::TradeoffResult result, RunTradeoff(request, TerminalWatcher()));
   PrintWarnings(result.warnings());
   if (options.json) return PrintJson(result);
   PrintLines(result);
@@ -48,7 +47,8 @@ absl::Status Run(const Options& options) {
       result.trials(), kPercent * result.median_disagreement());
   for (const v1::DesignSaving& saving : result.savings()) {
     std::printf(
-        "Designed levels: %.2f s leave %.3f %% of departure, for which 17 evenly spaced ones take %.2f s: "
+        "Designed levels: %.2f s leave %.3f %% of departure, for which 17 evenly spaced ones take "
+        "%.2f s: "
         "%.1f times as long\n",
         saving.design_s(), kPercent * saving.departure_rms(), saving.even_s(), saving.factor());
   }
@@ -70,7 +70,8 @@ void AddTradeoff(CLI::App& app, Work& work) {
             ->required();
         command.add_option("--out", options.out,
                            "Folder for tradeoff.json, tradeoff.csv and tradeoff.svg");
-        command.add_option("--trials", options.request.options.trials, "Of each setting, 2 to 1000")
+        command
+            .add_option("--trials", options.request.options.trials, "Of each setting, 2 to 1000")
             ->check(CLI::Range(2, 1000))
             ->capture_default_str();
         command

@@ -25,11 +25,15 @@ struct Options {
 
 void PrintDetail(const v1::UniformityDetail& detail) {
   for (const v1::CrossValidatedModel& model : detail.cross_validation()) {
-    if (!model.best()) continue;
-    std::printf("  %s of %d %s: held-out chi-square %.4f a pixel%s\n", model.model().c_str(),
-                model.size(), model.model() == "spline" ? "intervals" : "orders",
-                model.held_out_chi_square(),
-                model.model() == detail.smooth_model() ? ", taken" : "");
+    const char* unit = model.model() == "spline" ? "intervals" : "orders";
+    if (model.best()) {
+      std::printf("  %s of %d %s predicts best of its kind: held-out chi-square %.4f a pixel\n",
+                  model.model().c_str(), model.size(), unit, model.held_out_chi_square());
+    }
+    if (model.fitted()) {
+      std::printf("  %s of %d %s was fitted%s\n", model.model().c_str(), model.size(), unit,
+                  model.model() == detail.smooth_model() ? ", and taken" : "");
+    }
   }
   const v1::LevelIndependence& levels = detail.level_independence();
   if (!levels.reason().empty()) {

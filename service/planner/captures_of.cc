@@ -32,8 +32,8 @@ class PlanBuilder {
       CaptureSpec spec;
       spec.series = series;
       spec.level_id = i;
-      spec.stimulus.drive = DriveRgb{level.drive * channels[0], level.drive * channels[1],
-                                     level.drive * channels[2]};
+      spec.stimulus.drive =
+          DriveRgb{level.drive * channels[0], level.drive * channels[1], level.drive * channels[2]};
       Add(spec, level.frames);
     }
   }

@@ -46,8 +46,8 @@ absl::StatusOr<std::vector<std::vector<LevelFrames>>> LevelPlans(const Predictor
   constexpr int kUsualDarks = 8;
   for (const double seconds : grid.design_s) {
     for (const fit::ErrorAtU error : {fit::ErrorAtU::kLuminance, fit::ErrorAtU::kDeparture}) {
-      const auto designed = DesignLevels(pilot, predictor.need(), error, seconds,
-                                         predictor.costs(), kUsualDarks);
+      const auto designed =
+          DesignLevels(pilot, predictor.need(), error, seconds, predictor.costs(), kUsualDarks);
       if (absl::IsFailedPrecondition(designed.status())) continue;  // too little time for it
       EYEBOX_RETURN_IF_ERROR(designed.status());
       plans.push_back(designed->levels);
@@ -122,8 +122,8 @@ absl::StatusOr<Search> FindCheapest(Predictor& predictor, double tolerance,
                           CandidateSettings(predictor, tolerance, grid));
   std::vector<std::pair<double, const Setting*>> by_time;
   for (const Setting& setting : candidates) {
-    by_time.emplace_back(
-        CaptureSeconds(setting, predictor.pilot().exposures_s, predictor.costs()), &setting);
+    by_time.emplace_back(CaptureSeconds(setting, predictor.pilot().exposures_s, predictor.costs()),
+                         &setting);
   }
   std::ranges::stable_sort(by_time, {}, &std::pair<double, const Setting*>::first);
   Search search;

@@ -133,12 +133,12 @@ double LevelSeconds(const std::vector<LevelFrames>& levels, const std::vector<do
 }
 
 absl::StatusOr<DesignedLevels> DesignLevels(const Pilot& pilot, const Need& need,
-                                            fit::ErrorAtU error, double seconds,
-                                            const Costs& costs, int calibration_frames) {
+                                            fit::ErrorAtU error, double seconds, const Costs& costs,
+                                            int calibration_frames) {
   const Candidates candidates = OfferedBy(pilot, costs, calibration_frames);
-  EYEBOX_ASSIGN_OR_RETURN(const fit::LevelDesign design,
-                          fit::OptimalLevels(pilot.activation, error, candidates.levels,
-                                             LooksAt(need)));
+  EYEBOX_ASSIGN_OR_RETURN(
+      const fit::LevelDesign design,
+      fit::OptimalLevels(pilot.activation, error, candidates.levels, LooksAt(need)));
   const size_t exposures = pilot.exposures_s.size();
   const auto by_drive = SharesByDrive(candidates, design.shares, exposures);
   const auto used = std::ranges::count_if(by_drive, [](const auto& shares) {

@@ -20,8 +20,8 @@ struct DesignedLevels {
 // noise. Errors: those of OptimalLevels; FailedPrecondition (`seconds` do not suffice for one frame
 // of each level).
 absl::StatusOr<DesignedLevels> DesignLevels(const Pilot& pilot, const Need& need,
-                                            fit::ErrorAtU error, double seconds,
-                                            const Costs& costs, int calibration_frames);
+                                            fit::ErrorAtU error, double seconds, const Costs& costs,
+                                            int calibration_frames);
 
 // Seconds that `levels` take, stimuli included.
 double LevelSeconds(const std::vector<LevelFrames>& levels, const std::vector<double>& exposures_s,

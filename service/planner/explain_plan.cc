@@ -66,15 +66,14 @@ class Explainer {
         scene_.anywhere ? "the whole field"
                         : absl::StrFormat("the central %.3g deg", scene_.need.radius_deg);
     if (setting.tier == FieldTier::kNone) {
-      Add("field", "no map",
-          absl::StrFormat("over %s that leaves %.3g %% in all", region, without), true);
+      Add("field", "no map", absl::StrFormat("over %s that leaves %.3g %% in all", region, without),
+          true);
       return absl::OkStatus();
     }
-    const std::string choice =
-        setting.tier == FieldTier::kSmooth
-            ? absl::StrFormat("a polynomial of order %d", setting.tier_size)
-            : absl::StrFormat("a map of blocks of %d x %d px", setting.tier_size,
-                              setting.tier_size);
+    const std::string choice = setting.tier == FieldTier::kSmooth
+                                   ? absl::StrFormat("a polynomial of order %d", setting.tier_size)
+                                   : absl::StrFormat("a map of blocks of %d x %d px",
+                                                     setting.tier_size, setting.tier_size);
     Add("field", choice,
         absl::StrFormat("%s is used; without a map %.3g %% would be left, with it %.3g %% of bias "
                         "and %.3g %% of noise",
@@ -94,7 +93,8 @@ class Explainer {
     const std::string loss = absl::StrFormat("%.3g deg on black show %.3g %% of a full field",
                                              scene_.need.disk_deg, kPercent * factor);
     if (planned_.setting.disk_frames == 0) {
-      Add("scatter", "left in", absl::StrFormat("%s; in all %.3g %% are left", loss, without), true);
+      Add("scatter", "left in", absl::StrFormat("%s; in all %.3g %% are left", loss, without),
+          true);
       return absl::OkStatus();
     }
     Add("scatter", absl::StrFormat("a disk of that size, %d frames", planned_.setting.disk_frames),
@@ -116,8 +116,8 @@ class Explainer {
     Add("levels",
         absl::StrFormat("%d levels, %d to %d frames each, %d of %d exposures", levels.size(), least,
                         most, std::ranges::count(used, true), used.size()),
-        absl::StrFormat("noise of the levels %.3g %%, %s", kPercent * planned_.prediction.level_noise,
-                        Name(planned_.setting.model)));
+        absl::StrFormat("noise of the levels %.3g %%, %s",
+                        kPercent * planned_.prediction.level_noise, Name(planned_.setting.model)));
   }
 
   static std::string Name(fit::ActivationModel model) {
@@ -133,13 +133,15 @@ class Explainer {
 
   void Table() {
     Add("table", absl::StrFormat("%d knots", planned_.setting.table_size),
-        absl::StrFormat("model and table leave %.3g %%", kPercent * planned_.prediction.level_bias));
+        absl::StrFormat("model and table leave %.3g %%",
+                        kPercent * planned_.prediction.level_bias));
   }
 
   void Precision() {
     constexpr double kSinglePrecision = std::numeric_limits<float>::epsilon();
     Add("precision", "single precision maps, double precision fits",
-        absl::StrFormat("rounding of %.1g is far below a tenth of the tolerance", kSinglePrecision));
+        absl::StrFormat("rounding of %.1g is far below a tenth of the tolerance",
+                        kSinglePrecision));
   }
 
   Predictor& predictor_;

@@ -19,7 +19,7 @@ namespace eyebox::service {
 struct Truth {
   Image<double> white;  // cd/m2 of the white full field, [height, width]; NaN: not known
   std::function<double(const DriveRgb&)> relative_luminance;  // at the reference point, 1 at white
-  double glare_factor = 1;  // luminance amid a white disk on black over that of the white field
+  double glare_factor = 1;      // luminance amid a white disk on black over that of the white field
   double stated_over_true = 1;  // of the luminance scale, common to everything measured
 };
 

@@ -61,8 +61,8 @@ absl::StatusOr<Levels> ReduceLevels(FrameSource& source, const Setting& setting,
   std::vector<DiskReading> readings;
   for (const LevelFrames& level : setting.levels) {
     Stimulus stimulus;
-    stimulus.drive = DriveRgb{level.drive * channels[0], level.drive * channels[1],
-                              level.drive * channels[2]};
+    stimulus.drive =
+        DriveRgb{level.drive * channels[0], level.drive * channels[1], level.drive * channels[2]};
     EYEBOX_ASSIGN_OR_RETURN(optics::ReducedLevel reduced,
                             Reduce(source, stimulus, level.frames, calibration));
     readings.push_back(ReadReferenceDisk(reduced.luminance, calibration, level.drive));
@@ -142,8 +142,10 @@ absl::StatusOr<double> MeasureGlareFactor(FrameSource& source, const Setting& se
   Stimulus disk = Grey(1);
   disk.pattern = StimulusPattern::kDisk;
   disk.diameter_deg = need.disk_deg;
-  EYEBOX_ASSIGN_OR_RETURN(const double amid, ReadMiddle(source, disk, DiskFrames(setting), calibration));
-  EYEBOX_ASSIGN_OR_RETURN(const double full, ReadMiddle(source, Grey(1), setting.levels.back().frames, calibration));
+  EYEBOX_ASSIGN_OR_RETURN(const double amid,
+                          ReadMiddle(source, disk, DiskFrames(setting), calibration));
+  EYEBOX_ASSIGN_OR_RETURN(const double full,
+                          ReadMiddle(source, Grey(1), setting.levels.back().frames, calibration));
   return amid / full;
 }
 
@@ -151,8 +153,7 @@ absl::StatusOr<double> MeasureGlareFactor(FrameSource& source, const Setting& se
 
 std::vector<size_t> RegionPixels(ImageSize size, const PinholeGeometry& geometry,
                                  double radius_deg) {
-  const double radius_px =
-      geometry.focal_length_px * std::tan(radius_deg * std::numbers::pi / 180);
+  const double radius_px = geometry.focal_length_px * std::tan(radius_deg * std::numbers::pi / 180);
   std::vector<size_t> pixels;
   for (int y = 0; y < size.height_px; ++y) {
     for (int x = 0; x < size.width_px; ++x) {
@@ -191,9 +192,8 @@ absl::StatusOr<Measured> MeasureSetting(FrameSource& source, const Setting& sett
   }
   double reference = measured.fits[0].activation.Luminance(1);
   if (setting.primaries) {
-    EYEBOX_ASSIGN_OR_RETURN(
-        optics::ReducedLevel reduced,
-        Reduce(source, Grey(1), setting.levels.back().frames, *calibration));
+    EYEBOX_ASSIGN_OR_RETURN(optics::ReducedLevel reduced,
+                            Reduce(source, Grey(1), setting.levels.back().frames, *calibration));
     EYEBOX_ASSIGN_OR_RETURN(reference, MeanAtReference(reduced.luminance, *calibration));
     white = std::move(reduced.luminance.image);
   }

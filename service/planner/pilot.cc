@@ -115,8 +115,7 @@ absl::StatusOr<Pilot> MeasurePilot(FrameSource& source, const Clock& clock,
   pilot.compute_s_per_mpx =
       measured.seconds.reduce /
       (FrameCount(setting) * static_cast<double>(pilot.size.PixelCount()) / kPixelsPerMpx);
-  EYEBOX_ASSIGN_OR_RETURN(const auto stacks,
-                          source.Take(White(0), setting.levels.back().frames));
+  EYEBOX_ASSIGN_OR_RETURN(const auto stacks, source.Take(White(0), setting.levels.back().frames));
   EYEBOX_ASSIGN_OR_RETURN(optics::ReducedLevel white,
                           optics::ReduceLevel(stacks, *calibration, kGrey));
   pilot.white = std::move(white.luminance.image);

@@ -23,22 +23,22 @@ struct Pilot {
   PinholeGeometry geometry;
   std::vector<double> exposures_s;
   optics::NoiseModel noise;
-  double saturation_dn = 0;  // of a count, bias included
+  double saturation_dn = 0;     // of a count, bias included
   std::vector<double> dark_dn;  // median count of a dark above noise.bias_dn, [exposures]
   // DN/s of 1 cd/m2, [height, width]; NaN where nothing is known.
   Image<float> response;
   double response_at_reference = 0;
-  double flat_luminance = 0;    // unit of the activation
+  double flat_luminance = 0;  // unit of the activation
   double flat_relative_sigma = 0;
   size_t reference_pixels = 0;  // of the disk that gives the readings of the levels
   int frames = 0;               // of each exposure of white
   int calibration_frames = 0;
-  fit::ActivationFit activation;                // of grey
-  std::vector<fit::ActivationFit> primaries;    // of red, green and blue; empty: not measured
-  optics::MeasuredImage white;      // unit of the activation
-  optics::SmoothField white_smooth;  // of the highest order that the pilot can tell
-  std::vector<DiskFactor> disks;    // ascending; empty: not measured
-  double compute_s_per_mpx = 0;     // of a frame's pixels, 1e6 at a time
+  fit::ActivationFit activation;              // of grey
+  std::vector<fit::ActivationFit> primaries;  // of red, green and blue; empty: not measured
+  optics::MeasuredImage white;                // unit of the activation
+  optics::SmoothField white_smooth;           // of the highest order that the pilot can tell
+  std::vector<DiskFactor> disks;              // ascending; empty: not measured
+  double compute_s_per_mpx = 0;               // of a frame's pixels, 1e6 at a time
 };
 
 // Levels, frames and disks of the pilot.

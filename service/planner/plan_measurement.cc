@@ -23,13 +23,13 @@ constexpr std::string_view kSimulated = "sim:";
 
 absl::StatusOr<SimulatedMeasurement> OpenSimulated(const capture::RigConfig& rig) {
   if (!rig.camera_uri.starts_with(kSimulated)) {
-    return absl::UnimplementedError(absl::StrCat(
-        rig.camera_uri, ": a pilot is measured on simulated rigs alone; plan on a simulated rig "
-                        "that is like yours, such as sim:rift-s-like"));
+    return absl::UnimplementedError(
+        absl::StrCat(rig.camera_uri,
+                     ": a pilot is measured on simulated rigs alone; plan on a simulated rig "
+                     "that is like yours, such as sim:rift-s-like"));
   }
-  EYEBOX_ASSIGN_OR_RETURN(
-      const capture::SimParameters parameters,
-      capture::NamedSimParameters(rig.camera_uri.substr(kSimulated.size())));
+  EYEBOX_ASSIGN_OR_RETURN(const capture::SimParameters parameters,
+                          capture::NamedSimParameters(rig.camera_uri.substr(kSimulated.size())));
   return SimulatedMeasurement(parameters, rig.seed);
 }
 

@@ -79,10 +79,9 @@ std::vector<double> LevelKey(const Setting& setting) {
 
 // What the errors of the field depend on.
 std::vector<double> FieldKey(const Setting& setting) {
-  std::vector<double> key = {static_cast<double>(setting.tier),
-                             static_cast<double>(setting.tier_size),
-                             static_cast<double>(setting.calibration_frames),
-                             setting.primaries ? 1.0 : 0.0};
+  std::vector<double> key = {
+      static_cast<double>(setting.tier), static_cast<double>(setting.tier_size),
+      static_cast<double>(setting.calibration_frames), setting.primaries ? 1.0 : 0.0};
   const std::vector<int>& white = setting.levels.back().frames;
   if (setting.tier != FieldTier::kNone) key.insert(key.end(), white.begin(), white.end());
   return key;

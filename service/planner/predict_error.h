@@ -23,8 +23,8 @@ struct Prediction {
   double field_noise = 0;  // from the frames of the white field and the flat
   double field_bias = 0;   // of what the tier cannot follow
   double glare_noise = 0;
-  double glare_bias = 0;      // where glare is left in
-  double departure_rms = 0;   // see DeparturesOf: levels and model alone
+  double glare_bias = 0;     // where glare is left in
+  double departure_rms = 0;  // see DeparturesOf: levels and model alone
   double capture_s = 0;
   double compute_s = 0;  // of reduction, which is most of it
 };

@@ -54,8 +54,7 @@ void TakeColours(const v1::ScenePrediction& prediction, SceneNeed& need) {
 
 }  // namespace
 
-SceneNeed NeedOf(const SceneInput& scene, const v1::ScenePrediction& prediction,
-                 double field_deg) {
+SceneNeed NeedOf(const SceneInput& scene, const v1::ScenePrediction& prediction, double field_deg) {
   SceneNeed need;
   TakeColours(prediction, need);
   need.need.radius_deg = 0;
@@ -69,9 +68,8 @@ SceneNeed NeedOf(const SceneInput& scene, const v1::ScenePrediction& prediction,
                              : std::min(need.need.disk_deg, *field.diameter_deg);
   }
   if (need.need.radius_deg > field_deg) {
-    need.warnings.push_back(
-        absl::StrFormat("the scene uses %.3g deg, of which the camera sees %.3g",
-                        need.need.radius_deg, field_deg));
+    need.warnings.push_back(absl::StrFormat(
+        "the scene uses %.3g deg, of which the camera sees %.3g", need.need.radius_deg, field_deg));
     need.need.radius_deg = field_deg;
   }
   return need;

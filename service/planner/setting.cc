@@ -31,9 +31,12 @@ int Sum(const std::vector<int>& frames) { return std::accumulate(frames.begin(),
 
 std::string_view NameOf(FieldTier tier) {
   switch (tier) {
-    case FieldTier::kNone: return "none";
-    case FieldTier::kSmooth: return "smooth";
-    case FieldTier::kBlocks: return "blocks";
+    case FieldTier::kNone:
+      return "none";
+    case FieldTier::kSmooth:
+      return "smooth";
+    case FieldTier::kBlocks:
+      return "blocks";
   }
   return "";
 }

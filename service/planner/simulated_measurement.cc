@@ -176,8 +176,8 @@ absl::StatusOr<optics::ReducedLevel> SimulatedMeasurement::Measure(const Stimulu
                                                                    int repeats) {
   EYEBOX_ASSIGN_OR_RETURN(const auto* const calibration,
                           CalibrationOf(options_.calibration_frames));
-  EYEBOX_ASSIGN_OR_RETURN(
-      const auto stacks, Take(stimulus, std::vector<int>(options_.exposures_s.size(), repeats)));
+  EYEBOX_ASSIGN_OR_RETURN(const auto stacks,
+                          Take(stimulus, std::vector<int>(options_.exposures_s.size(), repeats)));
   return optics::ReduceLevel(stacks, *calibration, kGrey);
 }
 

@@ -35,7 +35,12 @@ class SimulatedMeasurement final : public FrameSource {
                                                   const std::vector<int>& frames) override;
   absl::StatusOr<Truth> TruthFor(double disk_deg) override;
 
-  // Reduced with calibration_frames.
+  // Darks, flats and noise model from calibration_frames, as `eyebox run` learns them.
+  absl::Status Calibrate() { return CalibrationOf(options_.calibration_frames).status(); }
+  const optics::Calibration& calibration() const {
+    return calibrations_.at(options_.calibration_frames);
+  }
+  // Reduced with it.
   absl::StatusOr<optics::ReducedLevel> Measure(const Stimulus& stimulus, int repeats);
   // The flat's luminance as stated over what it was, which scales every luminance.
   double scale_error() const { return 1 / flat_factor_; }

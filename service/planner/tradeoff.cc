@@ -46,8 +46,7 @@ absl::StatusOr<Trial> Try(FrameSource& source, const TradeoffLine& line, const C
   }
   trial.mean_square = MeanSquare(errors);
   trial.share_within /= static_cast<double>(errors.size());
-  trial.departure_mean_square = 
-      MeanSquare(DeparturesOf(measured.fits[0].activation, truth, need));
+  trial.departure_mean_square = MeanSquare(DeparturesOf(measured.fits[0].activation, truth, need));
   trial.compute_s = measured.seconds.Sum();
   return trial;
 }
@@ -195,8 +194,8 @@ std::vector<DesignSaving> SavingsByDesign(const Tradeoff& tradeoff, const Costs&
       const auto [log_s, log_rms] = *std::prev(next);
       if (!(log_rms >= wanted && wanted > next->second)) continue;
       const double t = (wanted - log_rms) / (next->second - log_rms);
-      savings.push_back({seconds_of(line), std::exp(log_s + t * (next->first - log_s)),
-                         line.departure_rms});
+      savings.push_back(
+          {seconds_of(line), std::exp(log_s + t * (next->first - log_s)), line.departure_rms});
       break;
     }
   }

@@ -32,9 +32,9 @@ absl::StatusOr<std::vector<TradeoffCase>> UsualCases(const Pilot& pilot, const C
 struct TradeoffLine {
   TradeoffCase what;
   Prediction predicted;
-  double rms = 0;        // measured, over places, levels and trials
-  double rms_sigma = 0;  // standard uncertainty, from the spread of the trials
-  double departure_rms = 0;  // measured, see DeparturesOf
+  double rms = 0;                 // measured, over places, levels and trials
+  double rms_sigma = 0;           // standard uncertainty, from the spread of the trials
+  double departure_rms = 0;       // measured, see DeparturesOf
   double share_within_bound = 0;  // of errors, of the predicted 95 %
   double compute_s = 0;           // mean of a trial, all steps
   bool on_front = false;          // nothing is both quicker and better for the same need

@@ -124,7 +124,8 @@ std::string ToCsv(const v1::TradeoffResult& result) {
         line.compute_s(), line.predicted_rms(), line.measured_rms().value(),
         line.measured_rms().sigma(), line.predicted_bound_95(), line.share_within_bound(),
         line.predicted_departure_rms(), line.measured_departure_rms(), line.on_front() ? 1 : 0);
-    if (line.has_price_s_per_percent()) absl::StrAppendFormat(&csv, "%.4g", line.price_s_per_percent());
+    if (line.has_price_s_per_percent())
+      absl::StrAppendFormat(&csv, "%.4g", line.price_s_per_percent());
     csv += '\n';
   }
   return csv;
@@ -144,9 +145,8 @@ absl::StatusOr<v1::TradeoffResult> RunTradeoff(const TradeoffRequest& request,
     return std::make_unique<SimulatedMeasurement>(parameters,
                                                   request.rig.seed + static_cast<uint64_t>(trial));
   };
-  EYEBOX_ASSIGN_OR_RETURN(
-      const Tradeoff tradeoff,
-      MeasureTradeoff(sources, request.options, *SystemClock(), watcher));
+  EYEBOX_ASSIGN_OR_RETURN(const Tradeoff tradeoff,
+                          MeasureTradeoff(sources, request.options, *SystemClock(), watcher));
   v1::TradeoffResult result = ToProto(tradeoff, request.options, uri);
   if (!request.out.empty()) EYEBOX_RETURN_IF_ERROR(WriteFiles(request.out, result));
   return result;

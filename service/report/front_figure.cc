@@ -19,8 +19,8 @@ constexpr double kPointRadius = 3.2;
 constexpr double kMargin = 1.25;  // factor around what is shown
 constexpr double kLabelDx = 6;
 
-Range Around(const std::vector<FrontPoint>& points, double FrontPoint::* first,
-             double FrontPoint::* second) {
+Range Around(const std::vector<FrontPoint>& points, double FrontPoint::*first,
+             double FrontPoint::*second) {
   Range range{points[0].*first, points[0].*first};
   for (const FrontPoint& point : points) {
     for (const double value : {point.*first, point.*second}) {

@@ -8,9 +8,9 @@
 namespace eyebox::service::report {
 
 struct FrontPoint {
-  double seconds = 0;          // above 0
-  double error_percent = 0;    // measured, above 0
-  double error_sigma = 0;      // of it
+  double seconds = 0;        // above 0
+  double error_percent = 0;  // measured, above 0
+  double error_sigma = 0;    // of it
   double predicted_percent = 0;
   bool on_front = false;
   std::string label;  // shown where it is on the front

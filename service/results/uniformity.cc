@@ -53,7 +53,7 @@ const char* NameOf(optics::FieldModel model) {
   return model == optics::FieldModel::kSpline ? "spline" : "polynomial";
 }
 
-void AddModels(const std::vector<optics::CrossValidated>& models, int best,
+void AddModels(const std::vector<optics::CrossValidated>& models, int best, int fitted,
                v1::UniformityDetail& detail) {
   for (const optics::CrossValidated& model : models) {
     v1::CrossValidatedModel& line = *detail.add_cross_validation();
@@ -61,12 +61,13 @@ void AddModels(const std::vector<optics::CrossValidated>& models, int best,
     line.set_size(model.size);
     line.set_held_out_chi_square(model.held_out_chi2);
     line.set_best(model.size == best);
+    line.set_fitted(model.size == fitted);
   }
 }
 
 void AddDetail(const optics::UniformityMap& map, v1::UniformityDetail& detail) {
-  AddModels(map.choice.polynomials, map.choice.polynomial.size, detail);
-  AddModels(map.choice.splines, map.choice.spline.size, detail);
+  AddModels(map.choice.polynomials, map.choice.polynomial.size, map.polynomial_order, detail);
+  AddModels(map.choice.splines, map.choice.spline.size, map.spline_intervals, detail);
   detail.set_smooth_model(NameOf(map.smooth.model));
   v1::FullFieldUniformity& field = *detail.mutable_full_field();
   field.set_minimum(map.area.g.minimum);

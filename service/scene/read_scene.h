@@ -36,7 +36,7 @@ struct SceneInput {
   std::vector<std::string> patch_names;
   std::vector<optics::Patch> patches;  // in the file's order
   std::vector<PatchField> patch_fields;
-  std::filesystem::path cube;          // empty: none
+  std::filesystem::path cube;  // empty: none
   std::optional<MixedReality> mixed_reality;
 };
 

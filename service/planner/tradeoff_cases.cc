@@ -62,11 +62,13 @@ void AddCounts(CaseList& list) {
 
 void AddExposures(CaseList& list, size_t exposures) {
   for (size_t count = 1; count < exposures; ++count) {
-    list.Add("exposures", absl::StrFormat("shortest %d", count), [&](Setting& s, Need&) {
-      for (LevelFrames& level : s.levels) {
-        for (size_t k = count; k < exposures; ++k) level.frames[k] = 0;
-      }
-    });
+    list.Add("exposures",
+             count == 1 ? "the shortest alone" : absl::StrFormat("the shortest %d", count),
+             [&](Setting& s, Need&) {
+               for (LevelFrames& level : s.levels) {
+                 for (size_t k = count; k < exposures; ++k) level.frames[k] = 0;
+               }
+             });
   }
 }
 
@@ -142,7 +144,7 @@ absl::Status AddDesigned(const Pilot& pilot, const Costs& costs, CaseList& list)
     EYEBOX_ASSIGN_OR_RETURN(
         const DesignedLevels designed,
         DesignLevels(pilot, {}, fit::ErrorAtU::kDeparture, seconds / 3, costs, 8));
-    list.Add("designed levels", absl::StrFormat("a third of the time of %d frames", frames),
+    list.Add("designed levels", absl::StrFormat("in a third of the time of %d frames", frames),
              [&](Setting& s, Need&) { s.levels = designed.levels; });
   }
   return absl::OkStatus();

@@ -68,7 +68,7 @@ std::string DrawLines(const v1::TradeoffResult& result) {
     if (!same_scene) continue;
     points.push_back({line.capture_s(), kPercent * line.measured_rms().value(),
                       kPercent * line.measured_rms().sigma(), kPercent * line.predicted_rms(),
-                      line.on_front(), line.setting()});
+                      line.on_front(), line.lever() + ": " + line.setting()});
   }
   return report::DrawFrontAlone(points);
 }

@@ -18,6 +18,8 @@ constexpr double kBottom = 420;
 constexpr double kPointRadius = 3.2;
 constexpr double kMargin = 1.25;  // factor around what is shown
 constexpr double kLabelDx = 6;
+constexpr double kLabelBelow = 16;     // every other one, so that neighbours do not overlap
+constexpr double kLabelsTurnAt = 0.6;  // of the width: further right they stand left of the point
 
 Range Around(const std::vector<FrontPoint>& points, double FrontPoint::*first,
              double FrontPoint::*second) {
@@ -36,8 +38,10 @@ void DrawFront(Svg& svg, const Panel& panel, std::vector<FrontPoint> points) {
   std::vector<Point> line;
   for (const FrontPoint& point : points) {
     line.push_back(panel.At(point.seconds, point.error_percent));
-    svg.Text({line.back().x + kLabelDx, line.back().y - kLabelDx}, point.label, Anchor::kStart,
-             "number");
+    const bool at_right = line.back().x > kLeft + kLabelsTurnAt * (kRight - kLeft);
+    svg.Text({line.back().x + (at_right ? -kLabelDx : kLabelDx),
+              line.back().y + (line.size() % 2 == 1 ? kLabelBelow : -kLabelDx)},
+             point.label, at_right ? Anchor::kEnd : Anchor::kStart, "number");
   }
   svg.Polyline(line, "curve curve-1");
 }

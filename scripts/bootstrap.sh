@@ -21,7 +21,7 @@ build_packages=(
 check_packages=(
   aravis-tools ccache clang clang-format clang-tidy git
   libbenchmark-dev libboost-dev libgmock-dev libgmp-dev libgtest-dev libmpfr-dev librapidcheck-dev
-  python3 python3-grpcio python3-h5py python3-numpy python3-protobuf
+  python3 python3-grpcio python3-h5py python3-numpy python3-protobuf python3-scipy
   strace
 )
 

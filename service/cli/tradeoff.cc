@@ -77,10 +77,12 @@ void AddTradeoff(CLI::App& app, Work& work) {
         command
             .add_option("--stimulus-seconds", options.request.options.costs.stimulus_s,
                         "Until a new stimulus is shown and steady")
+            ->check(CLI::NonNegativeNumber)
             ->capture_default_str();
         command
             .add_option("--frame-seconds", options.request.options.costs.frame_s,
                         "Of a frame, beside its exposure")
+            ->check(CLI::NonNegativeNumber)
             ->capture_default_str();
         command.add_flag("--json", options.json, "Print the result message");
       },

@@ -27,7 +27,6 @@ class Explainer {
     Levels();
     Calibration();
     Table();
-    Precision();
     return absl::OkStatus();
   }
 
@@ -128,20 +127,16 @@ class Explainer {
 
   void Calibration() {
     Add("darks and flats", absl::StrFormat("%d of each", planned_.setting.calibration_frames),
-        "no fewer keep the tolerance in less time");
+        "the fewest with which such a plan keeps the tolerance");
   }
 
   void Table() {
     Add("table", absl::StrFormat("%d knots", planned_.setting.table_size),
-        absl::StrFormat("model and table leave %.3g %%",
-                        kPercent * planned_.prediction.level_bias));
-  }
-
-  void Precision() {
-    constexpr double kSinglePrecision = std::numeric_limits<float>::epsilon();
-    Add("precision", "single precision maps, double precision fits",
-        absl::StrFormat("rounding of %.1g is far below a tenth of the tolerance",
-                        kSinglePrecision));
+        planned_.setting.primaries
+            ? "for each primary; luminance is stated for what the table shows, so its error is no "
+              "part of the promise"
+            : absl::StrFormat("model and table leave %.3g %%",
+                              kPercent * planned_.prediction.level_bias));
   }
 
   Predictor& predictor_;

@@ -1,5 +1,5 @@
-// Where the frames of a setting come from: a simulated rig, or a recording that holds more than any
-// setting asks for.
+// Where the frames of a setting come from. A simulated rig is the only source so far: it alone
+// knows the truth.
 #ifndef EYEBOX_SERVICE_PLANNER_FRAME_SOURCE_H_
 #define EYEBOX_SERVICE_PLANNER_FRAME_SOURCE_H_
 

@@ -93,7 +93,8 @@ absl::StatusOr<v1::MeasurementPlan> PlanMeasurement(const PlanRequest& request,
   EYEBOX_RETURN_IF_ERROR(watcher.Reach(0.1, "pilot"));
   PilotOptions options;
   options.primaries = !need.need.colours.empty();
-  if (need.need.disk_deg == 0) options.disks_deg.clear();
+  options.disks_deg.clear();
+  if (need.need.disk_deg > 0) options.disks_deg = {need.need.disk_deg};
   EYEBOX_ASSIGN_OR_RETURN(Pilot pilot, MeasurePilot(source, *SystemClock(), options));
   EYEBOX_ASSIGN_OR_RETURN(Predictor predictor,
                           Predictor::Make(std::move(pilot), need.need, request.costs));

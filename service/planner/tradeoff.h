@@ -47,8 +47,7 @@ struct Tradeoff {
   double median_disagreement = 0;  // of |predicted / measured rms - 1|
 };
 
-// A source for each trial, 0 that of the pilot; each from another sensor and noise, or from other
-// frames of one recording.
+// A source for each trial, 0 that of the pilot; each with a sensor and noise of its own.
 using SourceOfTrial = std::function<std::unique_ptr<FrameSource>(int trial)>;
 
 struct TradeoffOptions {

@@ -105,11 +105,11 @@ TEST_P(Predicted, ErrorIsWhatIsMeasured) {
   EXPECT_GT(prediction->bound_95, prediction->rms);
   const auto share = predictor->ShareWithin(setting, prediction->bound_95);
   EXPECT_NEAR(*share, 0.95, 1e-3);
-  // Twelve trials tell their rms to a fifth. Fits that end at v0 = 0, as half of them do where the
-  // display has no cutoff, err less than free ones, for which the prediction holds.
+  // Twelve trials tell their rms to a fifth. Fits of primaries that end at v0 = 0, as half of
+  // them do where the display has no cutoff, err less than free ones, which the prediction is for.
   const double ratio = prediction->rms / MeasuredRms(setting, need, 12);
-  EXPECT_GT(ratio, 0.7);
-  EXPECT_LT(ratio, 1.6);
+  EXPECT_GT(ratio, 0.65);
+  EXPECT_LT(ratio, setting.primaries ? 1.6 : 1.35);
 }
 
 Setting WithPrimaries(Setting setting) {

@@ -164,29 +164,4 @@ absl::StatusOr<MeasuredLevels> ReduceGreyLevels(capture::RecordingReader& record
   return levels;
 }
 
-absl::StatusOr<GreyLevel> ReduceBrightestLevel(capture::RecordingReader& recording,
-                                               const std::string& series,
-                                               const optics::Calibration& calibration,
-                                               const Watcher& watcher, const KnownGlare& glare) {
-  EYEBOX_ASSIGN_OR_RETURN(auto groups, GreyLevels(recording, series));
-  std::reverse(groups.begin(), groups.end());
-  EYEBOX_ASSIGN_OR_RETURN(const MeasuredDrift drift, MeasureDrift(recording));
-  std::vector<std::string> reasons;
-  for (size_t i = 0; i < groups.size(); ++i) {
-    EYEBOX_RETURN_IF_ERROR(
-        watcher.Reach(static_cast<double>(i) / static_cast<double>(groups.size()),
-                      "luminance of the brightest level"));
-    auto reduced = ReduceCaptures(recording, groups[i], calibration);
-    if (!reduced.ok()) return InLevel(groups[i], reduced.status());
-    if (IsUsable(*reduced)) {
-      EYEBOX_RETURN_IF_ERROR(
-          CorrectForDrift(recording, groups[i], drift.drift, reduced->luminance).status());
-      EYEBOX_ASSIGN_OR_RETURN(const auto figures, TakeScatterOut(glare, *reduced));
-      return GreyLevel{DriveOf(groups[i]), *std::move(reduced), figures};
-    }
-    reasons.push_back(WhyUnusable(groups[i], *reduced));
-  }
-  return NoUsableLevel(reasons);
-}
-
 }  // namespace eyebox::service

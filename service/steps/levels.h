@@ -70,13 +70,6 @@ absl::StatusOr<MeasuredLevels> ReduceGreyLevels(capture::RecordingReader& record
                                                 const Watcher& watcher,
                                                 const KnownGlare& glare = {});
 
-// The brightest usable level alone. Errors: as ReduceGreyLevels.
-absl::StatusOr<GreyLevel> ReduceBrightestLevel(capture::RecordingReader& recording,
-                                               const std::string& series,
-                                               const optics::Calibration& calibration,
-                                               const Watcher& watcher,
-                                               const KnownGlare& glare = {});
-
 }  // namespace eyebox::service
 
 #endif  // EYEBOX_SERVICE_STEPS_LEVELS_H_

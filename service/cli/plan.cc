@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <string>
 
@@ -35,6 +36,12 @@ void PrintPlan(const v1::MeasurementPlan& plan) {
       plan.parameters(3).value(), plan.captures(), plan.frames());
 }
 
+bool ReadsWhatIsShown(const v1::MeasurementPlan& plan) {
+  return std::ranges::any_of(plan.decisions(), [](const v1::PlanDecision& decision) {
+    return decision.about() == "activation" && decision.left_out();
+  });
+}
+
 absl::Status Run(const Options& options) {
   PlanRequest request = options.request;
   request.scene = options.scene;
@@ -52,6 +59,9 @@ absl::Status Run(const Options& options) {
   if (!plan.plan_file().empty()) {
     std::printf("Wrote %s; capture it with: eyebox capture RIG --plan %s --out RECORDING\n",
                 plan.plan_file().c_str(), plan.plan_file().c_str());
+    if (ReadsWhatIsShown(plan)) {
+      std::printf("Then each drive value: eyebox reduce RECORDING --series scene --level DRIVE\n");
+    }
   }
   return absl::OkStatus();
 }

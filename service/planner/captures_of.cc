@@ -8,6 +8,7 @@ namespace eyebox::service {
 namespace {
 
 constexpr uint64_t kOrderSeed = 1;
+constexpr const char* kSceneSeries = "scene";
 constexpr const char* kPrimaryNames[] = {"red", "green", "blue"};
 
 class PlanBuilder {
@@ -35,6 +36,18 @@ class PlanBuilder {
       spec.stimulus.drive =
           DriveRgb{level.drive * channels[0], level.drive * channels[1], level.drive * channels[2]};
       Add(spec, level.frames);
+    }
+  }
+
+  void AddShown(const Setting& setting, const Need& need) {
+    for (size_t i = 0; i < setting.shown.size(); ++i) {
+      CaptureSpec spec;
+      spec.series = kSceneSeries;
+      spec.level_id = static_cast<int>(i);
+      if (need.disk_deg > 0) spec.stimulus.pattern = StimulusPattern::kDisk;
+      spec.stimulus.diameter_deg = need.disk_deg;
+      spec.stimulus.drive = setting.shown[i].drive;
+      Add(spec, setting.shown[i].frames);
     }
   }
 
@@ -71,6 +84,7 @@ CapturePlan CapturesOf(const Setting& setting, const Pilot& pilot, const Need& n
     }
     builder.AddLevels({setting.levels.back()}, "", {1, 1, 1});
   }
+  builder.AddShown(setting, need);
   if (setting.disk_frames > 0) {
     CaptureSpec disk;
     disk.series = capture::kGlareSeries;

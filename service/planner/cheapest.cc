@@ -9,6 +9,7 @@
 #include "capture/base/status.h"
 #include "fit/cube/design_table.h"
 #include "service/planner/design_levels.h"
+#include "service/planner/shown_settings.h"
 
 namespace eyebox::service {
 namespace {
@@ -111,6 +112,12 @@ absl::StatusOr<std::vector<Setting>> CandidateSettings(Predictor& predictor, dou
           }
         }
       }
+    }
+  }
+  for (Setting& shown : ShownSettings(predictor, grid)) {
+    for (const int calibration : grid.calibration_frames) {
+      shown.calibration_frames = calibration;
+      candidates.push_back(shown);
     }
   }
   return candidates;

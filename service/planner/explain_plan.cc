@@ -49,6 +49,10 @@ class Explainer {
   }
 
   void Colour() {
+    if (!scene_.need.colours.empty() && !planned_.setting.primaries) {
+      return Add("colour", "the scene's own colours",
+                 "they do not vary, so red, green and blue need not be measured by themselves");
+    }
     if (planned_.setting.primaries) {
       return Add("colour", "red, green, blue and white",
                  absl::StrFormat("%d of the scene's patches are looked at in colour",
@@ -86,6 +90,11 @@ class Explainer {
       Add("scatter", "no disk", "nothing stands on black", true);
       return absl::OkStatus();
     }
+    if (!planned_.setting.shown.empty()) {
+      Add("scatter", absl::StrFormat("read at its own size, %.3g deg", scene_.need.disk_deg),
+          "what is read so has the glare of what is looked at");
+      return absl::OkStatus();
+    }
     EYEBOX_ASSIGN_OR_RETURN(const double without,
                             PercentWith([](Setting& s) { s.disk_frames = 0; }));
     const double factor = GlareFactorOf(predictor_.pilot(), scene_.need.disk_deg);
@@ -101,7 +110,21 @@ class Explainer {
     return absl::OkStatus();
   }
 
+  void Shown() {
+    int frames = 0;
+    for (const ShownFrames& thing : planned_.setting.shown) {
+      for (const int count : thing.frames) frames += count;
+    }
+    Add("levels",
+        absl::StrFormat("what the scene shows: %d, %d frames in all", planned_.setting.shown.size(),
+                        frames),
+        absl::StrFormat("it does not vary; noise of the readings %.3g %%",
+                        kPercent * planned_.prediction.level_noise));
+    Add("activation", "none", "every drive value that the scene shows is read", true);
+  }
+
   void Levels() {
+    if (!planned_.setting.shown.empty()) return Shown();
     const auto& levels = planned_.setting.levels;
     int least = std::numeric_limits<int>::max();
     int most = 0;
@@ -131,6 +154,9 @@ class Explainer {
   }
 
   void Table() {
+    if (!planned_.setting.shown.empty()) {
+      return Add("table", "none", "luminance is stated for the drive values as they are", true);
+    }
     Add("table", absl::StrFormat("%d knots", planned_.setting.table_size),
         planned_.setting.primaries
             ? "for each primary; luminance is stated for what the table shows, so its error is no "

@@ -149,6 +149,38 @@ absl::StatusOr<double> MeasureGlareFactor(FrameSource& source, const Setting& se
   return amid / full;
 }
 
+// Of Setting::shown: each is read as the scene shows it.
+absl::StatusOr<Measured> MeasureShown(FrameSource& source, const Setting& setting, const Need& need,
+                                      const std::vector<size_t>& region,
+                                      const optics::Calibration& calibration, const Clock& clock) {
+  Measured measured;
+  StopWatch watch(clock);
+  optics::MeasuredImage brightest;
+  double reference = 0;
+  for (const ShownFrames& thing : setting.shown) {
+    Stimulus stimulus;
+    stimulus.drive = thing.drive;
+    if (need.disk_deg > 0) stimulus.pattern = StimulusPattern::kDisk;
+    stimulus.diameter_deg = need.disk_deg;
+    EYEBOX_ASSIGN_OR_RETURN(optics::ReducedLevel reduced,
+                            Reduce(source, stimulus, thing.frames, calibration));
+    EYEBOX_ASSIGN_OR_RETURN(reference, MeanAtReference(reduced.luminance, calibration));
+    measured.readings.emplace_back(thing.drive, reference);
+    brightest = std::move(reduced.luminance.image);
+  }
+  if (!setting.levels.empty()) {
+    EYEBOX_ASSIGN_OR_RETURN(optics::ReducedLevel reduced,
+                            Reduce(source, Grey(1), setting.levels.back().frames, calibration));
+    EYEBOX_ASSIGN_OR_RETURN(reference, MeanAtReference(reduced.luminance, calibration));
+    brightest = std::move(reduced.luminance.image);
+  }
+  measured.seconds.reduce = watch.Lap();
+  EYEBOX_ASSIGN_OR_RETURN(measured.field, WhiteOf(setting, brightest, reference, region));
+  for (double& value : measured.field) value /= reference;
+  measured.seconds.field = watch.Lap();
+  return measured;
+}
+
 }  // namespace
 
 std::vector<size_t> RegionPixels(ImageSize size, const PinholeGeometry& geometry,
@@ -171,6 +203,9 @@ absl::StatusOr<Measured> MeasureSetting(FrameSource& source, const Setting& sett
                                         const Clock& clock) {
   EYEBOX_ASSIGN_OR_RETURN(const auto* const calibration,
                           source.CalibrationOf(setting.calibration_frames));
+  if (!setting.shown.empty()) {
+    return MeasureShown(source, setting, need, region, *calibration, clock);
+  }
   Measured measured;
   StopWatch watch(clock);
   const std::span<const Channels> series =
@@ -244,6 +279,10 @@ namespace {
 std::vector<double> ShownOverStated(const Measured& measured, const Truth& truth,
                                     const Need& need) {
   std::vector<double> ratios;
+  for (const auto& [drive, luminance] : measured.readings) {
+    ratios.push_back(truth.relative_luminance(drive) / luminance);
+  }
+  if (!ratios.empty()) return ratios;
   if (need.colours.empty()) {
     const double white = measured.fits[0].activation.Luminance(1);
     for (const double u : LooksAt(need)) {

@@ -3,6 +3,7 @@
 #define EYEBOX_SERVICE_PLANNER_MEASURE_SETTING_H_
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -31,6 +32,8 @@ struct StepSeconds {
 struct Measured {
   std::vector<fit::ActivationFit> fits;  // of grey, or of red, green and blue
   std::vector<fit::TableDesign> tables;  // likewise
+  // Instead of both: luminance at the reference point of each of Setting::shown, glare included.
+  std::vector<std::pair<DriveRgb, double>> readings;
   // Luminance of the white field over that at the reference point, of each pixel of the region;
   // NaN where nothing is known.
   std::vector<double> field;
@@ -52,7 +55,8 @@ std::vector<double> LooksAt(const Need& need);
 double StatedLuminance(std::span<const fit::ActivationFit> fits, const DriveRgb& drive);
 
 // Luminance shown over luminance stated - 1, against the truth, [region, u]: of grey u the stated
-// one is u times that of white, of colours that of the drive values that the tables make of them.
+// one is u times that of white, of colours that of the drive values that the tables make of them,
+// of what was shown as it is that of its reading.
 // Pixels without a value are left out. All but the luminance scale, which is common.
 std::vector<double> ErrorsOf(const Measured& measured, const Truth& truth, const Need& need,
                              const std::vector<size_t>& region);

@@ -74,6 +74,12 @@ std::vector<double> LevelKey(const Setting& setting) {
     key.push_back(level.drive);
     key.insert(key.end(), level.frames.begin(), level.frames.end());
   }
+  for (const ShownFrames& thing : setting.shown) {
+    key.insert(key.end(), thing.drive.begin(), thing.drive.end());
+    key.insert(key.end(), thing.frames.begin(), thing.frames.end());
+  }
+  // With a map the readings relative to it count.
+  if (!setting.shown.empty()) key.push_back(setting.tier == FieldTier::kNone ? 0 : 1);
   return key;
 }
 
@@ -82,8 +88,12 @@ std::vector<double> FieldKey(const Setting& setting) {
   std::vector<double> key = {
       static_cast<double>(setting.tier), static_cast<double>(setting.tier_size),
       static_cast<double>(setting.calibration_frames), setting.primaries ? 1.0 : 0.0};
-  const std::vector<int>& white = setting.levels.back().frames;
-  if (setting.tier != FieldTier::kNone) key.insert(key.end(), white.begin(), white.end());
+  if (setting.tier == FieldTier::kNone) return key;
+  const std::vector<int>& white = MapFrames(setting);
+  key.insert(key.end(), white.begin(), white.end());
+  if (setting.shown.empty()) return key;
+  const DriveRgb drive = setting.levels.empty() ? setting.shown.back().drive : DriveRgb{1, 1, 1};
+  key.insert(key.end(), drive.begin(), drive.end());
   return key;
 }
 
@@ -201,7 +211,34 @@ std::vector<double> Predictor::WithWhite(const fit::ActivationFit& fit, fit::Err
   return covariances;
 }
 
+absl::StatusOr<Predictor::LevelErrors> Predictor::OfShown(const Setting& setting) const {
+  const double white = LuminanceOf(pilot_, {1, 1, 1});
+  const bool own_map = setting.tier != FieldTier::kNone && setting.levels.empty();
+  LevelErrors errors;
+  for (const ShownFrames& thing : setting.shown) {
+    const double level = LuminanceOf(pilot_, thing.drive) / white;
+    errors.variance.push_back(ReadingVariance(thing.frames, setting, level));
+  }
+  const double brightest = errors.variance.back();
+  double sum = *std::ranges::max_element(errors.variance);
+  if (!setting.levels.empty()) sum += ReadingVariance(MapFrames(setting), setting);
+  if (!std::isfinite(sum)) {
+    return Rejected(setting.name, "something shown saturates or vanishes in every exposure it has",
+                    "give it another exposure");
+  }
+  if (own_map) {
+    // The map is of the brightest, whose reading cancels.
+    for (double& variance : errors.variance) variance += brightest;
+    errors.variance.back() = 0;
+  }
+  errors.departure = errors.variance;
+  errors.model.assign(errors.variance.size(), 0);
+  errors.bias = errors.model;
+  return errors;
+}
+
 absl::StatusOr<Predictor::LevelErrors> Predictor::OfLevels(const Setting& setting) {
+  if (!setting.shown.empty()) return OfShown(setting);
   if (!need_.colours.empty()) return OfPrimaries(setting);
   EYEBOX_ASSIGN_OR_RETURN(const fit::ActivationFit fit, FitOf(setting, pilot_.activation));
   LevelErrors errors;
@@ -245,6 +282,7 @@ std::vector<double> Predictor::LevelVariance(const Setting& setting,
                                              const LevelErrors& levels) const {
   const bool no_map = setting.tier == FieldTier::kNone;
   std::vector<double> variance = no_map || setting.primaries ? levels.variance : levels.departure;
+  if (!setting.shown.empty()) return variance;
   if (need_.disk_deg == 0 || setting.disk_frames == 0) return variance;
   // The disk's reading is divided by that of white, which has a part in the levels, or in the map.
   for (size_t i = 0; i < variance.size(); ++i) {

@@ -35,6 +35,9 @@ struct Prediction {
 double LuminanceVariance(const Pilot& pilot, double luminance, double response,
                          const std::vector<int>& frames, int dark_frames);
 
+// Luminance at the reference point, as the pilot has it. Colours ask for its primaries.
+double LuminanceOf(const Pilot& pilot, const DriveRgb& drive);
+
 class Predictor {
  public:
   // Errors: FailedPrecondition (no pixel of the region has a value).
@@ -98,12 +101,16 @@ class Predictor {
                                 const Setting& setting) const;
   absl::StatusOr<LevelErrors> OfLevels(const Setting& setting);
   absl::StatusOr<LevelErrors> OfPrimaries(const Setting& setting) const;
+  absl::StatusOr<LevelErrors> OfShown(const Setting& setting) const;
   double FlatVariance(double response, int frames) const;
+  // Luminance of the image that the map is made of, over that of white.
+  double MapLevel(const Setting& setting) const;
   absl::StatusOr<const optics::SmoothField*> SmoothOf(int order);
   std::vector<double> BlockBias(int side_px) const;
   absl::StatusOr<FieldErrors> OfField(const Setting& setting);
-  // Relative, of white at the reference point.
-  double ReadingVariance(const std::vector<int>& frames, const Setting& setting) const;
+  // Relative, of a reading at the reference point of `level` of white.
+  double ReadingVariance(const std::vector<int>& frames, const Setting& setting,
+                         double level = 1) const;
   GlareErrors OfGlare(const Setting& setting) const;
   // Mean and sigma of the error at every place of every thing looked at.
   std::vector<std::pair<double, double>> ErrorsOf(const Parts& parts) const;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "capture/base/status.h"
+#include "service/planner/measure_setting.h"
 #include "service/planner/predict_error.h"
 
 namespace eyebox::service {
@@ -31,6 +32,18 @@ double LuminanceVariance(const Pilot& pilot, double luminance, double response,
     weights += Square(response * exposure_s) / variance;
   }
   return weights > 0 ? 1 / weights : std::numeric_limits<double>::infinity();
+}
+
+double LuminanceOf(const Pilot& pilot, const DriveRgb& drive) {
+  if (drive[0] == drive[1] && drive[1] == drive[2]) {
+    return pilot.activation.activation.Luminance(drive[0]);
+  }
+  return StatedLuminance(pilot.primaries, drive);
+}
+
+double Predictor::MapLevel(const Setting& setting) const {
+  if (!setting.levels.empty()) return 1;
+  return LuminanceOf(pilot_, setting.shown.back().drive) / LuminanceOf(pilot_, {1, 1, 1});
 }
 
 double Predictor::FlatVariance(double response, int frames) const {
@@ -83,17 +96,20 @@ absl::StatusOr<Predictor::FieldErrors> Predictor::OfField(const Setting& setting
     blocks_[setting.tier_size] = BlockBias(setting.tier_size);
   }
   const std::vector<int> pilot_frames(pilot_.exposures_s.size(), pilot_.frames);
-  // Grey levels are taken relative to white, which the map holds; colours to its reading.
-  const double reference =
-      setting.primaries ? ReadingVariance(setting.levels.back().frames, setting) : 0;
+  // Grey levels are taken relative to white, which the map holds; colours and readings to its
+  // reading.
+  const bool by_reading = setting.primaries || (!setting.shown.empty() && !setting.levels.empty());
+  const double reference = by_reading ? ReadingVariance(MapFrames(setting), setting) : 0;
+  const double level = MapLevel(setting);
   for (size_t i = 0; i < places_.size(); ++i) {
     const Place& place = places_[i];
-    const auto of_pixel = [&](const std::vector<int>& frames, int calibration_frames) {
-      return LuminanceVariance(pilot_, place.white, place.response, frames, calibration_frames) /
-                 Square(place.white) +
+    const auto of_pixel = [&](double at, const std::vector<int>& frames, int calibration_frames) {
+      return LuminanceVariance(pilot_, at, place.response, frames, calibration_frames) /
+                 Square(at) +
              FlatVariance(place.response, calibration_frames);
     };
-    const double variance = of_pixel(setting.levels.back().frames, setting.calibration_frames);
+    const double variance =
+        of_pixel(level * place.white, MapFrames(setting), setting.calibration_frames);
     if (smooth == nullptr) {
       errors.bias.push_back(blocks_[setting.tier_size][i]);
       errors.variance.push_back(variance / Square(setting.tier_size) + reference);
@@ -103,21 +119,22 @@ absl::StatusOr<Predictor::FieldErrors> Predictor::OfField(const Setting& setting
     const double sigma = smooth->SigmaAt(place.x_px, place.y_px) / value;
     errors.bias.push_back(place.white / value - 1);
     errors.variance.push_back(Square(sigma) / std::max(smooth->reduced_chi2, 1.0) * variance /
-                                  of_pixel(pilot_frames, pilot_.calibration_frames) +
+                                  of_pixel(place.white, pilot_frames, pilot_.calibration_frames) +
                               reference);
   }
   return errors;
 }
 
-double Predictor::ReadingVariance(const std::vector<int>& frames, const Setting& setting) const {
-  const double white = pilot_.activation.activation.Luminance(1);
-  return LuminanceVariance(pilot_, white, pilot_.response_at_reference, frames,
+double Predictor::ReadingVariance(const std::vector<int>& frames, const Setting& setting,
+                                  double level) const {
+  const double luminance = level * pilot_.activation.activation.Luminance(1);
+  return LuminanceVariance(pilot_, luminance, pilot_.response_at_reference, frames,
                            setting.calibration_frames) /
-         (Square(white) * static_cast<double>(pilot_.reference_pixels));
+         (Square(luminance) * static_cast<double>(pilot_.reference_pixels));
 }
 
 Predictor::GlareErrors Predictor::OfGlare(const Setting& setting) const {
-  if (need_.disk_deg == 0) return {};
+  if (need_.disk_deg == 0 || !setting.shown.empty()) return {};  // readings hold it
   if (setting.disk_frames == 0) return {GlareFactorOf(pilot_, need_.disk_deg) - 1, 0};
   return {0, ReadingVariance(setting.levels.back().frames, setting) +
                  ReadingVariance(DiskFrames(setting), setting)};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <variant>
 
 #include "absl/strings/str_format.h"
 
@@ -57,6 +58,9 @@ void TakeColours(const v1::ScenePrediction& prediction, SceneNeed& need) {
 SceneNeed NeedOf(const SceneInput& scene, const v1::ScenePrediction& prediction, double field_deg) {
   SceneNeed need;
   TakeColours(prediction, need);
+  need.need.fixed = std::ranges::all_of(scene.patches, [&](const optics::Patch& patch) {
+    return std::holds_alternative<optics::Unlit>(scene.scene.materials[patch.material]);
+  });
   need.need.radius_deg = 0;
   for (const PatchField& field : scene.patch_fields) {
     need.anywhere = need.anywhere || !field.within_deg;

@@ -42,11 +42,17 @@ std::string_view NameOf(FieldTier tier) {
 }
 
 std::vector<bool> ExposuresInUse(const Setting& setting) {
-  std::vector<bool> used(setting.levels.front().frames.size(), false);
-  for (const LevelFrames& level : setting.levels) {
-    for (size_t k = 0; k < used.size(); ++k) used[k] = used[k] || level.frames[k] > 0;
-  }
+  std::vector<bool> used(MapFrames(setting).size(), false);
+  const auto add = [&](const std::vector<int>& frames) {
+    for (size_t k = 0; k < used.size(); ++k) used[k] = used[k] || frames[k] > 0;
+  };
+  for (const LevelFrames& level : setting.levels) add(level.frames);
+  for (const ShownFrames& thing : setting.shown) add(thing.frames);
   return used;
+}
+
+const std::vector<int>& MapFrames(const Setting& setting) {
+  return setting.levels.empty() ? setting.shown.back().frames : setting.levels.back().frames;
 }
 
 std::vector<int> DiskFrames(const Setting& setting) {
@@ -62,6 +68,9 @@ double CaptureSeconds(const Setting& setting, const std::vector<double>& exposur
   for (const LevelFrames& level : setting.levels) {
     seconds += series * SecondsOf(level.frames, exposures_s, costs);
   }
+  for (const ShownFrames& thing : setting.shown) {
+    seconds += SecondsOf(thing.frames, exposures_s, costs);
+  }
   if (setting.primaries) seconds += SecondsOf(setting.levels.back().frames, exposures_s, costs);
   if (setting.disk_frames > 0) seconds += SecondsOf(DiskFrames(setting), exposures_s, costs);
   return seconds;
@@ -71,6 +80,7 @@ int FrameCount(const Setting& setting) {
   int count = 2 * Sum(CalibrationFrames(setting));
   const int series = setting.primaries ? kPrimaries : 1;
   for (const LevelFrames& level : setting.levels) count += series * Sum(level.frames);
+  for (const ShownFrames& thing : setting.shown) count += Sum(thing.frames);
   if (setting.primaries) count += Sum(setting.levels.back().frames);
   return setting.disk_frames > 0 ? count + Sum(DiskFrames(setting)) : count;
 }

@@ -17,6 +17,12 @@ struct LevelFrames {
   std::vector<int> frames;
 };
 
+// One thing that the scene shows, by itself.
+struct ShownFrames {
+  DriveRgb drive = {};
+  std::vector<int> frames;  // [exposures]
+};
+
 // How luminance at other places is told from that at the reference point.
 enum class FieldTier {
   kNone,    // it is taken to be the same
@@ -28,7 +34,12 @@ std::string_view NameOf(FieldTier tier);  // "none", "smooth", "blocks"
 // A price and what one gets for it.
 struct Setting {
   std::string name;
-  std::vector<LevelFrames> levels;  // ascending drive; the last is white, drive 1
+  // Ascending drive; the last is white, drive 1. Beside `shown`: white alone, for the map; or
+  // none, and the last of `shown` makes the map.
+  std::vector<LevelFrames> levels;
+  // What the scene shows, as it shows it (disks included), ascending luminance: each is read, no
+  // activation is fitted and no table made. Empty: levels are measured.
+  std::vector<ShownFrames> shown = {};
   fit::ActivationModel model = fit::ActivationModel::kGammaWithCutoff;
   FieldTier tier = FieldTier::kSmooth;
   int tier_size = 4;
@@ -47,6 +58,7 @@ struct Need {
   std::vector<double> grey_u = {};  // the grey values that are looked at; empty: all from u_from up
   // Coloured things: u of red, green and blue, fractions of white. Empty: grey ones.
   std::vector<DriveRgb> colours = {};
+  bool fixed = false;  // none of it ever takes another value
   friend bool operator==(const Need&, const Need&) = default;
 };
 
@@ -57,7 +69,10 @@ struct Costs {
   double compute_s_per_mpx = 0;  // of each frame's pixels, 1e6 at a time; from the pilot
 };
 
-// Exposures that any level uses, [exposures].
+// Frames of the image that the map is made of, [exposures].
+const std::vector<int>& MapFrames(const Setting& setting);
+
+// Exposures that anything uses, [exposures].
 std::vector<bool> ExposuresInUse(const Setting& setting);
 
 // Frames of the scene's disk, [exposures].

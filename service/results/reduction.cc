@@ -9,6 +9,7 @@
 #include "service/artifacts.h"
 #include "service/results/parameter.h"
 #include "service/results/sigma_map.h"
+#include "service/steps/reference_disk.h"
 
 namespace eyebox::service {
 namespace {
@@ -46,6 +47,25 @@ void AddMean(const optics::MeasuredImage& image, v1::ReduceResult& result) {
                image.unit);
   AddParameter(*result.mutable_parameters(), "pixel_sigma_rms", std::sqrt(variance_sum / valid), 0,
                image.unit);
+}
+
+// Mean over the disk at the image centre that levels are read from; one without a value there
+// has none.
+void AddCentre(const optics::LuminanceImage& luminance, const optics::Calibration& calibration,
+               v1::ReduceResult& result) {
+  const DiskReading disk = ReadReferenceDisk(luminance, calibration, 0);
+  double sum = 0;
+  double variance = 0;
+  int count = 0;
+  for (size_t i = 0; i < disk.luminance.size(); ++i) {
+    if (!std::isfinite(disk.luminance[i])) continue;
+    sum += disk.luminance[i];
+    variance += disk.own_variance[i] + disk.flat_variance[i];
+    ++count;
+  }
+  if (count == 0) return;
+  AddParameter(*result.mutable_parameters(), "at_centre", sum / count, std::sqrt(variance) / count,
+               luminance.image.unit);
 }
 
 void AddExposures(const optics::BracketReport& report, v1::ReduceResult& result) {
@@ -138,6 +158,7 @@ absl::StatusOr<v1::ReduceResult> DescribeReduction(const optics::ReducedLevel& l
   result.set_width_px(luminance.image.size().width_px);
   result.set_height_px(luminance.image.size().height_px);
   AddMean(luminance.image, result);
+  AddCentre(luminance, calibration, result);
   auto& parameters = *result.mutable_parameters();
   AddParameter(parameters, "system_gain", noise.gain_dn_per_e, noise.gain_sigma_dn_per_e, "DN/e-");
   AddParameter(parameters, "temporal_dark_noise", std::sqrt(noise.read_variance_dn2),

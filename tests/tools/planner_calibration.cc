@@ -57,6 +57,7 @@ void DrawNeed(RandomStream& random, Need& need) {
   need.disk_deg = random.Uniform() < 0.5 ? 0 : Between(random, 3, 15);
   need.u_from = 0.05;
   const bool coloured = random.Uniform() < 0.3;
+  need.fixed = random.Uniform() < 0.5;
   const int patches = 1 + static_cast<int>(random.Below(4));
   for (int i = 0; i < patches; ++i) {
     const double u = LogBetween(random, 0.05, 1);
@@ -95,7 +96,11 @@ LeverGrid FinerGrid() {
   grid.even_levels = {5, 6, 7, 9, 12};
   grid.design_s.clear();
   for (double seconds = 1; seconds < 100; seconds *= 1.12) grid.design_s.push_back(seconds);
-  grid.white_frames = {0, 2, 3, 4, 6, 8, 10, 12, 16, 20, 24, 32};
+  grid.shown_frames.clear();
+  for (int frames = 1; frames <= 128; frames = std::max(frames + 1, frames * 5 / 4)) {
+    grid.shown_frames.push_back(frames);
+  }
+  grid.white_frames = {0, 1, 2, 3, 4, 6, 8, 10, 12, 16, 20, 24, 32};
   grid.orders = {1, 2, 3, 4, 5, 6};
   grid.block_px = {1, 2, 3, 4};
   return grid;

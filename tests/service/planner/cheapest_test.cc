@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "service/planner/plan_measurement.h"
 #include "tests/service/planner/small_rig.h"
@@ -21,6 +23,7 @@ LeverGrid SmallGrid() {
   grid.block_px = {1, 2};
   grid.calibration_frames = {2, 8};
   grid.disk_frames = {1, 8};
+  grid.shown_frames = {1, 4, 16};
   return grid;
 }
 
@@ -71,15 +74,32 @@ TEST(FindCheapest, WhatCannotBeKeptIsNotPromised) {
   EXPECT_GT(search->best->prediction.bound_95, 1e-6);
 }
 
+TEST(FindCheapest, OneGreyThatNeverVariesIsReadAlone) {
+  Need need{.radius_deg = 4, .grey_u = {0.5}, .fixed = true};
+  Predictor predictor = PredictorFor(need);
+  const auto alone = FindCheapest(predictor, 0.01, {}, SmallGrid());
+  ASSERT_TRUE(alone.ok() && alone->cheapest);
+  EXPECT_EQ(alone->cheapest->setting.shown.size(), 1U);
+  EXPECT_TRUE(alone->cheapest->setting.levels.empty());
+  need.fixed = false;
+  Predictor varying = PredictorFor(need);
+  const auto fitted = FindCheapest(varying, 0.01, {}, SmallGrid());
+  ASSERT_TRUE(fitted.ok() && fitted->cheapest);
+  EXPECT_TRUE(fitted->cheapest->setting.shown.empty());
+  EXPECT_LT(2 * alone->cheapest->prediction.capture_s, fitted->cheapest->prediction.capture_s);
+}
+
 TEST(CapturesOf, AreTheFramesThatTheSettingCounts) {
-  for (const bool primaries : {false, true}) {
-    Need need{.radius_deg = 12, .disk_deg = 8};
+  for (const auto& [primaries, fixed] : {std::pair{false, false}, {true, false}, {false, true}}) {
+    Need need{.radius_deg = 12, .disk_deg = 8, .fixed = fixed};
     if (primaries) need.colours = {{0.5, 0.2, 0.1}};
+    if (fixed) need.grey_u = {0.2, 0.5};
     Predictor predictor = PredictorFor(need);
     const auto search = FindCheapest(predictor, 0.01, {}, SmallGrid());
     ASSERT_TRUE(search.ok() && search->cheapest);
     const Setting& setting = search->cheapest->setting;
     EXPECT_EQ(setting.primaries, primaries);
+    EXPECT_EQ(setting.shown.size(), fixed ? 2U : 0U);
     const CapturePlan plan = CapturesOf(setting, predictor.pilot(), need);
     int frames = 0;
     int coloured = 0;
@@ -89,6 +109,7 @@ TEST(CapturesOf, AreTheFramesThatTheSettingCounts) {
     }
     EXPECT_EQ(frames, FrameCount(setting));
     EXPECT_EQ(coloured > 0, primaries);
+    EXPECT_EQ(std::ranges::count(plan.captures, "scene", &CaptureSpec::series) > 0, fixed);
   }
 }
 

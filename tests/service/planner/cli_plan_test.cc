@@ -14,10 +14,18 @@ namespace {
 
 using testing::HasSubstr;
 
-std::string WriteScene(const TemporaryFolder& folder, const std::string& patch) {
+constexpr char kUnlit[] = "unlit { color { r: 0.5 g: 0.5 b: 0.5 } }";
+constexpr char kLit[] = "hdrp_lit { base_color { r: 0.5 g: 0.5 b: 0.5 } }";
+
+std::string WriteScene(const TemporaryFolder& folder, const std::string& patch,
+                       const std::string& material = kLit) {
   const std::string file = folder / "scene.textproto";
   std::ofstream(file) << "renderer: SCENE_RENDERER_HDRP\n"
-                         "materials { name: \"grey\" unlit { color { r: 0.5 g: 0.5 b: 0.5 } } }\n"
+                         "materials { name: \"grey\" "
+                      << material
+                      << " }\n"
+                         "lights { name: \"sky\" ambient { intensity: 1 } }\n"
+                         "eye_position_m { z: -2 }\n"
                          "patches { name: \"patch\" material: \"grey\" "
                       << patch << " }\n";
   return file;
@@ -47,6 +55,23 @@ TEST(CliPlan, APlanIsCapturedAndRun) {
   const Outcome run = RunEyebox("fit " + recording);
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("gamma"));
+}
+
+TEST(CliPlan, WhatNeverVariesIsReadItself) {
+  const TemporaryFolder folder;
+  const std::string scene = WriteScene(folder, "within_deg: 5 diameter_deg: 8", kUnlit);
+  const std::string plan = folder / "plan.textproto";
+  const Outcome planned =
+      RunEyebox("plan --scene " + scene + " --tolerance 2% sim:rift-s-like --out " + plan);
+  ASSERT_EQ(planned.exit_code, 0) << planned.err;
+  EXPECT_THAT(planned.out, HasSubstr("eyebox reduce RECORDING --series scene"));
+  const std::string recording = folder / "recording";
+  const Outcome captured =
+      RunEyebox("capture sim:rift-s-like --plan " + plan + " --out " + recording);
+  ASSERT_EQ(captured.exit_code, 0) << captured.err;
+  const Outcome reduced = RunEyebox("reduce " + recording + " --series scene");
+  EXPECT_EQ(reduced.exit_code, 0) << reduced.err;
+  EXPECT_THAT(reduced.out, HasSubstr("at_centre"));
 }
 
 TEST(CliPlan, WhatCannotBeKeptIsRefusedWithAnOffer) {

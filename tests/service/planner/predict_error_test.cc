@@ -95,7 +95,7 @@ class Predicted : public testing::TestWithParam<std::pair<Setting, Need>> {};
 TEST_P(Predicted, ErrorIsWhatIsMeasured) {
   const auto& [setting, need] = GetParam();
   PilotOptions options;
-  options.primaries = setting.primaries;
+  options.primaries = !need.colours.empty();
   auto predictor = Predictor::Make(SmallPilot(options), need, {});
   ASSERT_TRUE(predictor.ok()) << predictor.status();
   const auto prediction = predictor->Predict(setting);
@@ -116,6 +116,18 @@ Setting WithPrimaries(Setting setting) {
   setting.primaries = true;
   return setting;
 }
+// What is shown, a few frames of the shortest exposure each, instead of levels.
+Setting Showing(const std::vector<DriveRgb>& drives, int white_frames, FieldTier tier, int size) {
+  Setting setting = SettingOf(5, white_frames, tier, size);
+  if (white_frames > 0) {
+    setting.levels = {{1, {white_frames, 0, 0}}};
+  } else {
+    setting.levels.clear();
+  }
+  for (const DriveRgb& drive : drives) setting.shown.push_back({drive, {2, 0, 0}});
+  setting.disk_frames = 0;
+  return setting;
+}
 const Need kGrey{.radius_deg = 15};
 const Need kDisk{.radius_deg = 15, .disk_deg = 8};
 const Need kOne{.radius_deg = 4, .grey_u = {0.3}};
@@ -127,7 +139,13 @@ INSTANTIATE_TEST_SUITE_P(
                     std::pair(SettingOf(9, 1, FieldTier::kBlocks, 1), kGrey),
                     std::pair(SettingOf(5, 2, FieldTier::kSmooth, 4), kDisk),
                     std::pair(SettingOf(5, 1, FieldTier::kNone, 0), kOne),
-                    std::pair(WithPrimaries(SettingOf(5, 2, FieldTier::kSmooth, 4)), kColours)));
+                    std::pair(WithPrimaries(SettingOf(5, 2, FieldTier::kSmooth, 4)), kColours),
+                    std::pair(Showing({{0.5, 0.5, 0.5}}, 0, FieldTier::kNone, 0), kOne),
+                    std::pair(Showing({{0.4, 0.4, 0.4}, {0.8, 0.8, 0.8}}, 0, FieldTier::kBlocks, 1),
+                              kGrey),
+                    std::pair(Showing({{0.5, 0.5, 0.5}}, 2, FieldTier::kSmooth, 4), kDisk),
+                    std::pair(Showing({{0.8, 0.6, 0.5}, {0.4, 0.7, 0.9}}, 1, FieldTier::kBlocks, 2),
+                              kColours)));
 
 }  // namespace
 }  // namespace eyebox::service

@@ -40,6 +40,16 @@ TEST(NeedOf, GreyPatchesAskForTheirLevelsAndTheirPartOfTheField) {
   EXPECT_TRUE(need.warnings.empty());
 }
 
+TEST(NeedOf, WhatIsLitVaries) {
+  SceneInput scene = With({{}, {}});
+  scene.scene.materials = {optics::Unlit{}, optics::LitMaterial{}};
+  scene.patches.resize(2);
+  const v1::ScenePrediction shown = Showing({{0.4, 0.4, 0.4}, {0.5, 0.5, 0.5}});
+  EXPECT_TRUE(NeedOf(scene, shown, 24).need.fixed);
+  scene.patches[1].material = 1;
+  EXPECT_FALSE(NeedOf(scene, shown, 24).need.fixed);
+}
+
 TEST(NeedOf, OneColourAsksForThePrimaries) {
   const SceneNeed need = NeedOf(With({{}, {}}), Showing({{0.4, 0.4, 0.4}, {0.5, 0.4, 0.4}}), 24);
   EXPECT_EQ(need.need.colours.size(), 2U);

@@ -13,7 +13,9 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (size < 1 + sizeof(record)) return 0;
   std::memcpy(&record, data + 1, sizeof(record));
   std::vector<uint16_t> pixels((size - 1 - sizeof(record)) / sizeof(uint16_t));
-  std::memcpy(pixels.data(), data + 1 + sizeof(record), pixels.size() * sizeof(uint16_t));
+  if (!pixels.empty()) {
+    std::memcpy(pixels.data(), data + 1 + sizeof(record), pixels.size() * sizeof(uint16_t));
+  }
   if (data[0] % 2 == 1) {
     record.frame_xxh3 = Checksum(pixels.data(), pixels.size() * sizeof(uint16_t));
     record.record_xxh3 = Checksum(&record, offsetof(FrameRecord, record_xxh3));

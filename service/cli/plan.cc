@@ -60,7 +60,9 @@ absl::Status Run(const Options& options) {
     std::printf("Wrote %s; capture it with: eyebox capture RIG --plan %s --out RECORDING\n",
                 plan.plan_file().c_str(), plan.plan_file().c_str());
     if (ReadsWhatIsShown(plan)) {
-      std::printf("Then each drive value: eyebox reduce RECORDING --series scene --level DRIVE\n");
+      std::printf(
+          "Then read each of what it shows (scene-1, scene-2, ... from dark to bright): "
+          "eyebox reduce RECORDING --series scene-1\n");
     }
   }
   return absl::OkStatus();

@@ -8,7 +8,6 @@ namespace eyebox::service {
 namespace {
 
 constexpr uint64_t kOrderSeed = 1;
-constexpr const char* kSceneSeries = "scene";
 constexpr const char* kPrimaryNames[] = {"red", "green", "blue"};
 
 class PlanBuilder {
@@ -42,8 +41,8 @@ class PlanBuilder {
   void AddShown(const Setting& setting, const Need& need) {
     for (size_t i = 0; i < setting.shown.size(); ++i) {
       CaptureSpec spec;
-      spec.series = kSceneSeries;
-      spec.level_id = static_cast<int>(i);
+      // A series each, by which it is chosen to be read: a colour has no level.
+      spec.series = "scene-" + std::to_string(i + 1);
       if (need.disk_deg > 0) spec.stimulus.pattern = StimulusPattern::kDisk;
       spec.stimulus.diameter_deg = need.disk_deg;
       spec.stimulus.drive = setting.shown[i].drive;

@@ -17,11 +17,13 @@ struct LeverGrid {
   std::vector<int> even_levels = {5, 9};
   std::vector<double> design_s = {1,  1.25, 1.6, 2,  2.5, 3.2, 4,  5,  6.3, 8,  10,
                                   13, 16,   20,  25, 32,  40,  50, 64, 80,  100};
-  std::vector<int> white_frames = {0, 1, 2, 4, 8, 12, 16, 24, 32};  // of white, at least
+  std::vector<int> white_frames = {0, 2, 4, 8, 12, 16, 24, 32};  // of white, at least
   std::vector<int> orders = {2, 3, 4, 5, 6};
   std::vector<int> block_px = {1, 2, 3, 4};
   std::vector<int> calibration_frames = {2, 3, 4, 6, 8, 12, 16, 24, 32};
+  // Where what the scene shows is read itself: of it, and of white for the map.
   std::vector<int> shown_frames = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128};
+  std::vector<int> map_frames = {1, 2, 4, 8, 12, 16, 24, 32};
   std::vector<int> disk_frames = {1, 2, 4, 8, 16, 32};
 };
 

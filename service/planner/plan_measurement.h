@@ -31,7 +31,8 @@ absl::StatusOr<v1::MeasurementPlan> PlanMeasurement(const PlanRequest& request,
                                                     const Watcher& watcher);
 
 // What to capture for `setting`: darks, flats, the levels of series "" (or "red", "green", "blue"
-// and white), the disk. Flats are of the luminance that the pilot's were.
+// and white), what the scene shows (series "scene-1" and on, ascending luminance), the disk. Flats
+// are of the luminance that the pilot's were.
 CapturePlan CapturesOf(const Setting& setting, const Pilot& pilot, const Need& need);
 
 }  // namespace eyebox::service

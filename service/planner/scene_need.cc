@@ -35,6 +35,18 @@ DriveRgb ColourOf(const v1::PatchPrediction& patch, SceneNeed& need) {
   return colour;
 }
 
+// Whether all of it can be read as it is shown: unlit, and alike in size, as what is read is shown
+// at one size.
+bool IsFixed(const SceneInput& scene) {
+  const bool unlit = std::ranges::all_of(scene.patches, [&](const optics::Patch& patch) {
+    return std::holds_alternative<optics::Unlit>(scene.scene.materials[patch.material]);
+  });
+  const bool alike = std::ranges::all_of(scene.patch_fields, [&](const PatchField& field) {
+    return field.diameter_deg == scene.patch_fields.front().diameter_deg;
+  });
+  return unlit && alike;
+}
+
 void TakeColours(const v1::ScenePrediction& prediction, SceneNeed& need) {
   std::vector<DriveRgb> colours;
   for (const v1::PatchPrediction& patch : prediction.patches()) {
@@ -58,9 +70,7 @@ void TakeColours(const v1::ScenePrediction& prediction, SceneNeed& need) {
 SceneNeed NeedOf(const SceneInput& scene, const v1::ScenePrediction& prediction, double field_deg) {
   SceneNeed need;
   TakeColours(prediction, need);
-  need.need.fixed = std::ranges::all_of(scene.patches, [&](const optics::Patch& patch) {
-    return std::holds_alternative<optics::Unlit>(scene.scene.materials[patch.material]);
-  });
+  need.need.fixed = IsFixed(scene);
   need.need.radius_deg = 0;
   for (const PatchField& field : scene.patch_fields) {
     need.anywhere = need.anywhere || !field.within_deg;

@@ -58,7 +58,7 @@ struct Need {
   std::vector<double> grey_u = {};  // the grey values that are looked at; empty: all from u_from up
   // Coloured things: u of red, green and blue, fractions of white. Empty: grey ones.
   std::vector<DriveRgb> colours = {};
-  bool fixed = false;  // none of it ever takes another value
+  bool fixed = false;  // none of it ever takes another value, and all of it is of one size
   friend bool operator==(const Need&, const Need&) = default;
 };
 

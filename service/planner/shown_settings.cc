@@ -105,8 +105,7 @@ void AddMaps(const Predictor& predictor, const LeverGrid& grid, Setting setting,
   std::vector<std::vector<LevelFrames>> images;  // what the map is made of
   if (predictor.need().disk_deg == 0) images.emplace_back();
   const size_t exposure = BestFrameOf(predictor, {1, 1, 1}).exposure;
-  for (const int frames : grid.white_frames) {
-    if (frames == 0) continue;
+  for (const int frames : grid.map_frames) {
     LevelFrames white{1, std::vector<int>(predictor.pilot().exposures_s.size(), 0)};
     white.frames[exposure] = frames;
     images.push_back({white});
@@ -131,6 +130,8 @@ void AddMaps(const Predictor& predictor, const LeverGrid& grid, Setting setting,
 std::vector<Setting> ShownSettings(const Predictor& predictor, const LeverGrid& grid) {
   const Need& need = predictor.need();
   if (!need.fixed || (need.grey_u.empty() && need.colours.empty())) return {};
+  // What colours take is told by primaries; Predictor says so where they were not measured.
+  if (!need.colours.empty() && predictor.pilot().primaries.empty()) return {};
   const std::vector<DriveRgb> drives = DrivesOf(predictor);
   const size_t exposures = predictor.pilot().exposures_s.size();
   std::vector<Setting> settings;

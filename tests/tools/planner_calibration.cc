@@ -100,7 +100,8 @@ LeverGrid FinerGrid() {
   for (int frames = 1; frames <= 128; frames = std::max(frames + 1, frames * 5 / 4)) {
     grid.shown_frames.push_back(frames);
   }
-  grid.white_frames = {0, 1, 2, 3, 4, 6, 8, 10, 12, 16, 20, 24, 32};
+  grid.map_frames = {1, 2, 3, 4, 6, 8, 10, 12, 16, 20, 24, 32};
+  grid.white_frames = {0, 2, 3, 4, 6, 8, 10, 12, 16, 20, 24, 32};
   grid.orders = {1, 2, 3, 4, 5, 6};
   grid.block_px = {1, 2, 3, 4};
   return grid;

@@ -24,6 +24,7 @@ LeverGrid SmallGrid() {
   grid.calibration_frames = {2, 8};
   grid.disk_frames = {1, 8};
   grid.shown_frames = {1, 4, 16};
+  grid.map_frames = {1, 16};
   return grid;
 }
 
@@ -109,7 +110,9 @@ TEST(CapturesOf, AreTheFramesThatTheSettingCounts) {
     }
     EXPECT_EQ(frames, FrameCount(setting));
     EXPECT_EQ(coloured > 0, primaries);
-    EXPECT_EQ(std::ranges::count(plan.captures, "scene", &CaptureSpec::series) > 0, fixed);
+    for (const char* series : {"scene-1", "scene-2"}) {
+      EXPECT_EQ(std::ranges::count(plan.captures, series, &CaptureSpec::series), fixed) << series;
+    }
   }
 }
 

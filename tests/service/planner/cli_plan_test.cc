@@ -64,12 +64,12 @@ TEST(CliPlan, WhatNeverVariesIsReadItself) {
   const Outcome planned =
       RunEyebox("plan --scene " + scene + " --tolerance 2% sim:rift-s-like --out " + plan);
   ASSERT_EQ(planned.exit_code, 0) << planned.err;
-  EXPECT_THAT(planned.out, HasSubstr("eyebox reduce RECORDING --series scene"));
+  EXPECT_THAT(planned.out, HasSubstr("eyebox reduce RECORDING --series scene-1"));
   const std::string recording = folder / "recording";
   const Outcome captured =
       RunEyebox("capture sim:rift-s-like --plan " + plan + " --out " + recording);
   ASSERT_EQ(captured.exit_code, 0) << captured.err;
-  const Outcome reduced = RunEyebox("reduce " + recording + " --series scene");
+  const Outcome reduced = RunEyebox("reduce " + recording + " --series scene-1");
   EXPECT_EQ(reduced.exit_code, 0) << reduced.err;
   EXPECT_THAT(reduced.out, HasSubstr("at_centre"));
 }

@@ -50,6 +50,16 @@ TEST(NeedOf, WhatIsLitVaries) {
   EXPECT_FALSE(NeedOf(scene, shown, 24).need.fixed);
 }
 
+TEST(NeedOf, WhatIsOfSeveralSizesIsNotReadAtOne) {
+  SceneInput scene = With({{5.0, 6.0}, {5.0, 6.0}});
+  const v1::ScenePrediction shown = Showing({{0.4, 0.4, 0.4}, {0.5, 0.5, 0.5}});
+  EXPECT_TRUE(NeedOf(scene, shown, 24).need.fixed);
+  scene.patch_fields[1].diameter_deg = 8;
+  EXPECT_FALSE(NeedOf(scene, shown, 24).need.fixed);
+  scene.patch_fields[1].diameter_deg.reset();
+  EXPECT_FALSE(NeedOf(scene, shown, 24).need.fixed);
+}
+
 TEST(NeedOf, OneColourAsksForThePrimaries) {
   const SceneNeed need = NeedOf(With({{}, {}}), Showing({{0.4, 0.4, 0.4}, {0.5, 0.4, 0.4}}), 24);
   EXPECT_EQ(need.need.colours.size(), 2U);

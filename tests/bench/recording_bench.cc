@@ -137,10 +137,11 @@ void Recording(benchmark::State& state) {
   }
 }
 
-// A fast small camera, and a slow one of 12 megapixels: 0.5 GB and 0.8 GB.
+// A fast small camera, one of 1.2 megapixels, and a slow one of 12: 0.5, 0.6 and 0.8 GB.
 BENCHMARK(Recording)
     ->ArgNames({"width_px", "height_px", "frames_per_capture", "frames_per_sync"})
     ->Args({512, 512, 512, 64})
+    ->Args({1280, 960, 128, 32})
     ->Args({4096, 3000, 16, 4})
     ->Iterations(1)
     ->UseManualTime()

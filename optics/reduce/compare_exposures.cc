@@ -1,78 +1,80 @@
 #include "optics/reduce/compare_exposures.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "capture/base/vectorise.h"
 
 namespace eyebox::optics {
-
 namespace {
 
 constexpr size_t kLanes = 8;
+constexpr size_t kChunk = 64 * kLanes;  // so many products wait in the first-level cache
 
-// Sums of every kLanes-th pixel, so that as many are added at once.
-struct LaneSums {
-  std::array<double, kLanes> shorter = {}, longer = {}, shorter_variance = {}, longer_variance = {};
-  std::array<size_t, kLanes> pixels = {};
+// What is summed, of some pixels; nothing where one of the two is invalid or no light is expected.
+struct Products {
+  float shorter[kChunk];
+  float longer[kChunk];
+  float shorter_variance[kChunk];
+  float longer_variance[kChunk];
 };
 
-// The first kLanes * groups pixels.
+// Single precision: a weight's rounding is the same in all four sums.
 EYEBOX_VECTORISE
-void AddGroups(const MeasuredImage& shorter, const MeasuredImage& longer, const float* expected,
-               size_t groups, LaneSums& sums) {
-  const float* const shorter_value = shorter.value.pixels().data();
-  const float* const longer_value = longer.value.pixels().data();
-  const float* const shorter_variance = shorter.variance.pixels().data();
-  const float* const longer_variance = longer.variance.pixels().data();
-  const uint8_t* const shorter_mask = shorter.mask.pixels().data();
-  const uint8_t* const longer_mask = longer.mask.pixels().data();
-  LaneSums own = sums;
-  for (size_t i = 0; i < groups * kLanes; i += kLanes) {
-    for (size_t lane = 0; lane < kLanes; ++lane) {
-      const size_t k = i + lane;
-      const bool valid = (shorter_mask[k] | longer_mask[k]) == 0;
-      const bool counts = valid & (expected[k] > 0);
-      const double a = counts ? shorter_variance[k] : 1.0F;
-      const double b = counts ? longer_variance[k] : 1.0F;
-      const double weight = (counts ? expected[k] : 0.0F) / (a + b);
-      own.pixels[lane] += valid ? 1 : 0;
-      own.shorter[lane] += weight * (counts ? shorter_value[k] : 0.0F);
-      own.longer[lane] += weight * (counts ? longer_value[k] : 0.0F);
-      own.shorter_variance[lane] += weight * weight * a;
-      own.longer_variance[lane] += weight * weight * b;
-    }
+void Multiply(const ConstMeasuredRow& shorter, const ConstMeasuredRow& longer,
+              const float* expected, size_t first, size_t count, Products* __restrict__ products) {
+  const float* const shorter_value = shorter.value.data() + first;
+  const float* const longer_value = longer.value.data() + first;
+  const float* const shorter_variance = shorter.variance.data() + first;
+  const float* const longer_variance = longer.variance.data() + first;
+  const uint8_t* const shorter_mask = shorter.mask.data() + first;
+  const uint8_t* const longer_mask = longer.mask.data() + first;
+  const float* const light = expected + first;
+  for (size_t i = 0; i < count; ++i) {
+    const bool counts = ((shorter_mask[i] | longer_mask[i]) == 0) & (light[i] > 0);
+    const float weight = light[i] / (shorter_variance[i] + longer_variance[i]);
+    products->shorter[i] = counts ? weight * shorter_value[i] : 0.0F;
+    products->longer[i] = counts ? weight * longer_value[i] : 0.0F;
+    products->shorter_variance[i] = counts ? weight * weight * shorter_variance[i] : 0.0F;
+    products->longer_variance[i] = counts ? weight * weight * longer_variance[i] : 0.0F;
   }
-  sums = own;
+}
+
+// Every kLanes-th by itself, so that as many are added at once.
+EYEBOX_VECTORISE
+double Sum(const float* terms, size_t count) {
+  double lanes[kLanes] = {};
+  const size_t whole = count / kLanes * kLanes;
+  for (size_t i = 0; i < whole; i += kLanes) {
+    for (size_t lane = 0; lane < kLanes; ++lane)
+      lanes[lane] += static_cast<double>(terms[i + lane]);
+  }
+  double sum = 0;
+  for (const double lane : lanes) sum += lane;
+  for (size_t i = whole; i < count; ++i) sum += static_cast<double>(terms[i]);
+  return sum;
+}
+
+size_t CountBothValid(std::span<const uint8_t> one, std::span<const uint8_t> other) {
+  size_t count = 0;
+  for (size_t i = 0; i < one.size(); ++i) count += (one[i] | other[i]) == 0 ? 1 : 0;
+  return count;
 }
 
 }  // namespace
 
-void AddPair(const MeasuredImage& shorter, const MeasuredImage& longer,
-             const Image<float>& expected_rate_dn_s, PairSums& sums) {
-  const auto expected = expected_rate_dn_s.pixels();
-  const size_t whole = expected.size() / kLanes;
-  LaneSums lanes;
-  AddGroups(shorter, longer, expected.data(), whole, lanes);
-  for (size_t i = whole * kLanes; i < expected.size(); ++i) {
-    if ((shorter.mask.pixels()[i] | longer.mask.pixels()[i]) != 0) continue;
-    ++sums.pixels;
-    if (!(expected[i] > 0)) continue;
-    const double shorter_variance = shorter.variance.pixels()[i];
-    const double longer_variance = longer.variance.pixels()[i];
-    const double weight = expected[i] / (shorter_variance + longer_variance);
-    sums.shorter += weight * shorter.value.pixels()[i];
-    sums.longer += weight * longer.value.pixels()[i];
-    sums.shorter_variance += weight * weight * shorter_variance;
-    sums.longer_variance += weight * weight * longer_variance;
-  }
-  for (size_t lane = 0; lane < kLanes; ++lane) {
-    sums.pixels += lanes.pixels[lane];
-    sums.shorter += lanes.shorter[lane];
-    sums.longer += lanes.longer[lane];
-    sums.shorter_variance += lanes.shorter_variance[lane];
-    sums.longer_variance += lanes.longer_variance[lane];
+void AddPair(const ConstMeasuredRow& shorter, const ConstMeasuredRow& longer,
+             std::span<const float> expected_rate_dn_s, PairSums& sums) {
+  Products products;
+  sums.pixels += CountBothValid(shorter.mask, longer.mask);
+  for (size_t first = 0; first < shorter.size(); first += kChunk) {
+    const size_t count = std::min(kChunk, shorter.size() - first);
+    Multiply(shorter, longer, expected_rate_dn_s.data(), first, count, &products);
+    sums.shorter += Sum(products.shorter, count);
+    sums.longer += Sum(products.longer, count);
+    sums.shorter_variance += Sum(products.shorter_variance, count);
+    sums.longer_variance += Sum(products.longer_variance, count);
   }
 }
 
@@ -80,7 +82,7 @@ ExposurePairCheck CompareExposures(const MeasuredImage& shorter, double shorter_
                                    const MeasuredImage& longer, double longer_s,
                                    const Image<float>& expected_rate_dn_s) {
   PairSums sums;
-  AddPair(shorter, longer, expected_rate_dn_s, sums);
+  AddPair(PixelsOf(shorter), PixelsOf(longer), expected_rate_dn_s.pixels(), sums);
   return CompareExposures(sums, shorter_s, longer_s);
 }
 

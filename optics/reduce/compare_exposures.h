@@ -2,9 +2,12 @@
 #ifndef EYEBOX_OPTICS_REDUCE_COMPARE_EXPOSURES_H_
 #define EYEBOX_OPTICS_REDUCE_COMPARE_EXPOSURES_H_
 
+#include <span>
+
 #include "capture/base/image.h"
 #include "optics/reduce/bracket_report.h"
 #include "optics/reduce/measured_image.h"
+#include "optics/reduce/measured_row.h"
 
 namespace eyebox::optics {
 
@@ -16,8 +19,8 @@ struct PairSums {
   double longer_variance = 0;
   size_t pixels = 0;
 };
-void AddPair(const MeasuredImage& shorter, const MeasuredImage& longer,
-             const Image<float>& expected_rate_dn_s, PairSums& sums);
+void AddPair(const ConstMeasuredRow& shorter, const ConstMeasuredRow& longer,
+             std::span<const float> expected_rate_dn_s, PairSums& sums);
 ExposurePairCheck CompareExposures(const PairSums& sums, double shorter_s, double longer_s);
 
 // Ratio of the two rates over the pixels valid in both: sum(w longer) / sum(w shorter), with

@@ -24,22 +24,22 @@ double MedianOfValid(const MeasuredImage& image) {
   return Median(std::move(sample));
 }
 
+// What is written is not read elsewhere: said here, because the compiler gives up comparing arrays.
 EYEBOX_VECTORISE
-void DividePixels(size_t first, size_t end, const MeasuredImage& response, float lowest,
-                  MeasuredImage& image) {
-  float* const value = image.value.pixels().data();
-  float* const variance = image.variance.pixels().data();
-  uint8_t* const mask = image.mask.pixels().data();
-  const float* const flat = response.value.pixels().data();
-  const float* const flat_variance = response.variance.pixels().data();
-  for (size_t i = first; i < end; ++i) {
+void DividePixels(size_t count, const float* flat, const float* flat_variance, float lowest,
+                  float* __restrict__ value, float* __restrict__ variance,
+                  uint8_t* __restrict__ mask) {
+  for (size_t i = 0; i < count; ++i) {
     const float per_flat = 1.0F / flat[i];
     const float ratio = value[i] * per_flat;
-    value[i] = ratio;
-    variance[i] = (variance[i] + ratio * ratio * flat_variance[i]) * per_flat * per_flat;
     // NaN compares false, so that a masked flat is unusable too.
     const bool usable = (flat[i] >= lowest) & (flat[i] * flat[i] > 25.0F * flat_variance[i]);
-    mask[i] = static_cast<uint8_t>(mask[i] | (usable ? 0 : kNoFlat));
+    const auto reasons = static_cast<uint8_t>(mask[i] | (usable ? 0 : kNoFlat));
+    const float ratio_variance =
+        (variance[i] + ratio * ratio * flat_variance[i]) * per_flat * per_flat;
+    value[i] = reasons != 0 ? kNoValue : ratio;
+    variance[i] = reasons != 0 ? kNoValue : ratio_variance;
+    mask[i] = reasons;
   }
 }
 
@@ -57,8 +57,10 @@ absl::StatusOr<MeasuredImage> DivideByFlat(MeasuredImage image, const MeasuredIm
   }
   const auto lowest = static_cast<float>(minimum * median);
   ForEachPieceInParallel(image.mask.pixels().size(), [&](size_t first, size_t end) {
-    DividePixels(first, end, response, lowest, image);
-    BlankMaskedPixels(first, end, image);
+    DividePixels(end - first, response.value.pixels().data() + first,
+                 response.variance.pixels().data() + first, lowest,
+                 image.value.pixels().data() + first, image.variance.pixels().data() + first,
+                 image.mask.pixels().data() + first);
   });
   image.unit = image.unit == response.unit ? "1" : absl::StrCat(image.unit, " / ", response.unit);
   image.history.push_back(absl::StrCat("DivideByFlat(median ", median, ", minimum ", minimum, ")"));

@@ -8,8 +8,10 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "capture/base/image.h"
+#include "optics/reduce/box_mean.h"
 #include "optics/reduce/calibration.h"
 #include "optics/reduce/frame_stacker.h"
 #include "optics/reduce/rows.h"
@@ -38,9 +40,43 @@ struct ExpectedRateOptions {
 Image<float> ExpectedRate(std::span<const Exposure> exposures, const Calibration& calibration,
                           const ExpectedRateOptions& options);
 
-// Those rows of it. Rows of `saturation` within smoothing_radius * colour_period_px must be there.
-Image<float> ExpectedRate(std::span<const Exposure> exposures, const Calibration& calibration,
-                          const ExpectedRateOptions& options, Rows rows);
+// Those rows of it, one after the other, bit by bit as above. Rows of `saturation` within
+// smoothing_radius * colour_period_px of them must be there. The arguments must outlive it.
+class ExpectedRateRows {
+ public:
+  ExpectedRateRows(std::span<const Exposure> exposures, const Calibration& calibration,
+                   const ExpectedRateOptions& options, Rows rows);
+
+  // Of the first of `rows`, then of the next; valid until the next call.
+  std::span<const float> Next();
+
+ private:
+  // Counts and time pooled over the usable exposures of one row.
+  struct RowPool {
+    std::vector<float> counts_dn;
+    std::vector<float> time_s;
+    std::vector<float> noise_dn2;  // of counts_dn, without the light's shot noise
+  };
+  // The variance of a rate R is dark_variance + shot_variance * R, (DN/s)^2.
+  struct PooledRow {
+    std::vector<float> rate_dn_s;
+    std::vector<float> dark_variance;
+    std::vector<float> shot_variance;  // per DN/s
+  };
+
+  void Pool(int y);
+
+  std::span<const Exposure> exposures_;
+  const Calibration& calibration_;
+  float edge_squared_;
+  Rows seen_;  // with the neighbours that the smoothing takes in
+  int next_;   // row to be given
+  int next_pooled_;
+  RowPool pool_;
+  std::vector<PooledRow> ring_;
+  BoxMeanRows smooth_;
+  std::vector<float> expected_;
+};
 
 }  // namespace eyebox::optics
 

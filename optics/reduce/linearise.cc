@@ -63,21 +63,22 @@ std::vector<LinearityPair> PairsOfSeries(std::span<const ResponsePoint> points) 
   return pairs;
 }
 
+void LinearisePixels(const LinearityCurve& curve, const MeasuredRow& counts_dn) {
+  for (size_t i = 0; i < counts_dn.size(); ++i) {
+    if (counts_dn.mask[i] != 0) continue;
+    const LinearityCurve::Corrected corrected = curve.At(counts_dn.value[i]);
+    counts_dn.value[i] = static_cast<float>(corrected.value_dn);
+    counts_dn.variance[i] = static_cast<float>(
+        counts_dn.variance[i] * corrected.slope * corrected.slope + corrected.variance_dn2);
+  }
+}
+
 absl::StatusOr<MeasuredImage> Linearise(MeasuredImage image_dn, const LinearityCurve& curve) {
   if (image_dn.unit != "DN") {
     return BadInput("image", absl::StrCat("its unit is ", image_dn.unit),
                     "linearise counts in DN, before they are divided by anything");
   }
-  const auto value = image_dn.value.pixels();
-  const auto variance = image_dn.variance.pixels();
-  const auto mask = image_dn.mask.pixels();
-  for (size_t i = 0; i < value.size(); ++i) {
-    if (mask[i] != 0) continue;
-    const LinearityCurve::Corrected corrected = curve.At(value[i]);
-    value[i] = static_cast<float>(corrected.value_dn);
-    variance[i] = static_cast<float>(variance[i] * corrected.slope * corrected.slope +
-                                     corrected.variance_dn2);
-  }
+  LinearisePixels(curve, PixelsOf(image_dn));
   image_dn.history.push_back(absl::StrCat("Linearise(", curve.knots_dn.size(), " knots from ",
                                           curve.from_dn, " to ", curve.to_dn, " DN, at most ",
                                           100 * curve.LargestRelativeCorrection(), " %)"));

@@ -8,6 +8,7 @@
 
 #include "absl/status/statusor.h"
 #include "optics/reduce/measured_image.h"
+#include "optics/reduce/measured_row.h"
 
 namespace eyebox::optics {
 
@@ -72,6 +73,8 @@ absl::StatusOr<LinearityCurve> EstimateLinearity(std::span<const LinearityPair> 
 // Corrects an image of counts above the dark; the variance is that of the count times the slope
 // squared plus that of the curve. Errors: InvalidArgument (image not in DN).
 absl::StatusOr<MeasuredImage> Linearise(MeasuredImage image_dn, const LinearityCurve& curve);
+// The same of some pixels.
+void LinearisePixels(const LinearityCurve& curve, const MeasuredRow& counts_dn);
 
 }  // namespace eyebox::optics
 

@@ -27,6 +27,11 @@ struct NoiseF {
   float read, gain, quantisation, bias_dn, per_frame;
 };
 
+float VarianceOfFewer(NoiseF noise, int frames, float expected_dn) {
+  noise.per_frame = 1.0F / static_cast<float>(frames);
+  return noise.MeanVariance(noise.FrameNoise(expected_dn - noise.bias_dn));
+}
+
 // Where frames were left out of the mean, fewer share the noise.
 void AllowForRejected(const Stack& light, int y, const NoiseF& model, float exposure_s,
                       std::span<const float> expected_dn_s, std::span<const float> dark_dn,
@@ -35,10 +40,8 @@ void AllowForRejected(const Stack& light, int y, const NoiseF& model, float expo
   const auto rejected = light.rejected_count.row(y);
   for (size_t x = 0; x < variance.size(); ++x) {
     if (rejected[x] == 0) continue;
-    NoiseF fewer = model;
-    fewer.per_frame = 1.0F / static_cast<float>(light.frames - rejected[x]);
     const float expected_dn = expected_dn_s[x] * exposure_s + dark_dn[x];
-    variance[x] = fewer.MeanVariance(fewer.FrameNoise(expected_dn - fewer.bias_dn));
+    variance[x] = VarianceOfFewer(model, light.frames - rejected[x], expected_dn);
   }
 }
 
@@ -55,6 +58,11 @@ struct Rails {
     return static_cast<uint8_t>((high ? kSaturated : 0) | (low ? kUnderexposed : 0));
   }
 };
+
+Rails RailsOf(const Stack& light, double guard_sigmas) {
+  return {static_cast<float>(light.range.SaturationDn()),
+          static_cast<float>(guard_sigmas * guard_sigmas)};
+}
 
 struct RowInput {
   std::span<const float> expected_dn_s;
@@ -86,7 +94,68 @@ void MeasureRow(const RowInput& row, const NoiseF& model, const Rails& rails, fl
   }
 }
 
+// What MeasureAboveDark reads of one row.
+struct RowAboveDark {
+  const float* expected_dn_s;
+  const float* mean_dn;
+  const float* dark_dn;
+  const float* dark_variance;
+  const uint8_t* dark_mask;
+  const uint8_t* saturation;
+  const uint8_t* defective;
+};
+
+// MeasureRow, SubtractDark and blanking in one pass over the pixels. Nothing that is written is
+// read: said here, because the compiler gives up comparing so many arrays.
+EYEBOX_VECTORISE
+void MeasureAboveDark(const RowAboveDark& row, const NoiseF& model, const Rails& rails,
+                      float exposure_s, size_t width, float* __restrict__ values,
+                      float* __restrict__ variances, uint8_t* __restrict__ flags) {
+  const NoiseF noise = model;
+  const Rails limits = rails;
+  const RowAboveDark in = row;
+  for (size_t x = 0; x < width; ++x) {
+    const float expected_dn = in.expected_dn_s[x] * exposure_s + in.dark_dn[x];
+    const float frame_noise = noise.FrameNoise(expected_dn - noise.bias_dn);
+    const uint8_t railed = limits.Flags(expected_dn, frame_noise + noise.quantisation);
+    const uint8_t reasons = in.saturation[x] != 0 ? in.saturation[x] : railed;
+    const auto mask =
+        static_cast<uint8_t>(reasons | (in.defective[x] != 0 ? kDefective : 0) | in.dark_mask[x]);
+    const float value = in.mean_dn[x] - in.dark_dn[x];
+    const float variance = noise.MeanVariance(frame_noise) + in.dark_variance[x];
+    values[x] = mask != 0 ? kNoValue : value;
+    variances[x] = mask != 0 ? kNoValue : variance;
+    flags[x] = mask;
+  }
+}
+
 }  // namespace
+
+void MeasureRowAboveDark(const Exposure& exposure, int y, std::span<const float> expected_dn_s,
+                         const NoiseModel& noise, const DefectMap& defects,
+                         double rail_guard_sigmas, const MeasuredRow& counts) {
+  const Stack& light = *exposure.light;
+  const MeasuredImage& dark = exposure.dark->image_dn;
+  const NoiseF model(noise, light.frames);
+  const auto exposure_s = static_cast<float>(light.setting.exposure_s);
+  const RowAboveDark row{expected_dn_s.data(),
+                         light.mean_dn.row(y).data(),
+                         dark.value.row(y).data(),
+                         dark.variance.row(y).data(),
+                         dark.mask.row(y).data(),
+                         exposure.saturation.row(y - exposure.saturation_first_row).data(),
+                         defects.defective.row(y).data()};
+  MeasureAboveDark(row, model, RailsOf(light, rail_guard_sigmas), exposure_s, counts.size(),
+                   counts.value.data(), counts.variance.data(), counts.mask.data());
+  if (light.rejected_count.empty()) return;
+  const auto rejected = light.rejected_count.row(y);
+  for (size_t x = 0; x < counts.size(); ++x) {
+    if (rejected[x] == 0 || counts.mask[x] != 0) continue;
+    const float expected_dn = expected_dn_s[x] * exposure_s + row.dark_dn[x];
+    counts.variance[x] =
+        VarianceOfFewer(model, light.frames - rejected[x], expected_dn) + row.dark_variance[x];
+  }
+}
 
 MeasuredImage MeasureStack(const Exposure& exposure, const Image<float>& expected_rate_dn_s,
                            const NoiseModel& noise, const DefectMap& defects,
@@ -94,8 +163,7 @@ MeasuredImage MeasureStack(const Exposure& exposure, const Image<float>& expecte
   const Stack& light = *exposure.light;
   MeasuredImage image = UnwrittenMeasuredImage(light.size(), "DN");
   const NoiseF model(noise, light.frames);
-  const Rails rails{static_cast<float>(light.range.SaturationDn()),
-                    static_cast<float>(rail_guard_sigmas * rail_guard_sigmas)};
+  const Rails rails = RailsOf(light, rail_guard_sigmas);
   const auto exposure_s = static_cast<float>(light.setting.exposure_s);
   for (int y = 0; y < image.size().height_px; ++y) {
     const auto mean_dn = light.mean_dn.row(y);

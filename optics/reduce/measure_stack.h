@@ -2,10 +2,13 @@
 #ifndef EYEBOX_OPTICS_REDUCE_MEASURE_STACK_H_
 #define EYEBOX_OPTICS_REDUCE_MEASURE_STACK_H_
 
+#include <span>
+
 #include "capture/base/image.h"
 #include "optics/reduce/calibration.h"
 #include "optics/reduce/expected_rate.h"
 #include "optics/reduce/measured_image.h"
+#include "optics/reduce/measured_row.h"
 
 namespace eyebox::optics {
 
@@ -17,6 +20,12 @@ namespace eyebox::optics {
 MeasuredImage MeasureStack(const Exposure& exposure, const Image<float>& expected_rate_dn_s,
                            const NoiseModel& noise, const DefectMap& defects,
                            double rail_guard_sigmas);
+
+// Row y of the light, its dark subtracted, as MeasureStack and SubtractDark give it, bit by bit.
+// `expected_dn_s`: of that row.
+void MeasureRowAboveDark(const Exposure& exposure, int y, std::span<const float> expected_dn_s,
+                         const NoiseModel& noise, const DefectMap& defects,
+                         double rail_guard_sigmas, const MeasuredRow& counts);
 
 }  // namespace eyebox::optics
 

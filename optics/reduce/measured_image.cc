@@ -24,16 +24,13 @@ MeasuredImage UnwrittenMeasuredImage(ImageSize size, std::string unit) {
   return image;
 }
 
-void BlankMaskedPixels(MeasuredImage& image) {
-  BlankMaskedPixels(0, image.mask.pixels().size(), image);
-}
-
 EYEBOX_VECTORISE
-void BlankMaskedPixels(size_t first, size_t end, MeasuredImage& image) {
+void BlankMaskedPixels(MeasuredImage& image) {
   float* const value = image.value.pixels().data();
   float* const variance = image.variance.pixels().data();
   const uint8_t* const mask = image.mask.pixels().data();
-  for (size_t i = first; i < end; ++i) {
+  const size_t count = image.mask.pixels().size();
+  for (size_t i = 0; i < count; ++i) {
     value[i] = mask[i] != 0 ? kNoValue : value[i];
     variance[i] = mask[i] != 0 ? kNoValue : variance[i];
   }

@@ -44,8 +44,6 @@ MeasuredImage UnwrittenMeasuredImage(ImageSize size, std::string unit);
 
 // Writes NaN to value and variance wherever mask is not 0.
 void BlankMaskedPixels(MeasuredImage& image);
-// Of pixels [first, end) in row order alone.
-void BlankMaskedPixels(size_t first, size_t end, MeasuredImage& image);
 
 // Number of pixels with any of `flags` set.
 size_t CountFlagged(const MeasuredImage& image, uint8_t flags);

@@ -10,14 +10,9 @@ namespace eyebox::optics {
 namespace {
 
 EYEBOX_VECTORISE
-void AddWeighted(const MeasuredImage& rate, MeasuredImage& sums) {
-  const float* const value = rate.value.pixels().data();
-  const float* const variance = rate.variance.pixels().data();
-  const uint8_t* const mask = rate.mask.pixels().data();
-  float* const weighted = sums.value.pixels().data();
-  float* const weights = sums.variance.pixels().data();
-  uint8_t* const reasons = sums.mask.pixels().data();
-  const size_t count = rate.mask.pixels().size();
+void AddWeighted(const float* value, const float* variance, const uint8_t* mask, size_t count,
+                 float* __restrict__ weighted, float* __restrict__ weights,
+                 uint8_t* __restrict__ reasons) {
   for (size_t i = 0; i < count; ++i) {
     const float weight = 1.0F / variance[i];
     weights[i] += mask[i] == 0 ? weight : 0.0F;
@@ -27,21 +22,28 @@ void AddWeighted(const MeasuredImage& rate, MeasuredImage& sums) {
 }
 
 EYEBOX_VECTORISE
-void DivideByWeights(MeasuredImage& sums) {
-  float* const value = sums.value.pixels().data();
-  float* const variance = sums.variance.pixels().data();
-  uint8_t* const mask = sums.mask.pixels().data();
-  const size_t count = sums.mask.pixels().size();
+void DivideByWeights(size_t count, float* __restrict__ value, float* __restrict__ variance,
+                     uint8_t* __restrict__ mask) {
   for (size_t i = 0; i < count; ++i) {
     const bool valid = variance[i] > 0;
     const float merged_variance = 1.0F / variance[i];
-    value[i] = value[i] * merged_variance;
-    variance[i] = merged_variance;
-    mask[i] = valid ? uint8_t{0} : mask[i];
+    const uint8_t reasons = valid ? uint8_t{0} : mask[i];
+    value[i] = reasons != 0 ? kNoValue : value[i] * merged_variance;
+    variance[i] = reasons != 0 ? kNoValue : merged_variance;
+    mask[i] = reasons;
   }
 }
 
 }  // namespace
+
+void AddToMerge(const ConstMeasuredRow& rate, const MeasuredRow& sums) {
+  AddWeighted(rate.value.data(), rate.variance.data(), rate.mask.data(), rate.size(),
+              sums.value.data(), sums.variance.data(), sums.mask.data());
+}
+
+void FinishMerge(const MeasuredRow& sums) {
+  DivideByWeights(sums.size(), sums.value.data(), sums.variance.data(), sums.mask.data());
+}
 
 absl::Status BracketMerger::Add(const MeasuredImage& rate) {
   if (exposures_ == 0) {
@@ -51,7 +53,7 @@ absl::Status BracketMerger::Add(const MeasuredImage& rate) {
                     "size or unit differ from the first exposure's",
                     "merge exposures of one stimulus and one region of interest");
   }
-  AddWeighted(rate, sums_);
+  AddToMerge(PixelsOf(rate), PixelsOf(sums_));
   for (const std::string& step : rate.history) sums_.history.push_back(step);
   ++exposures_;
   return absl::OkStatus();
@@ -61,8 +63,7 @@ absl::StatusOr<MeasuredImage> BracketMerger::Finish() {
   if (exposures_ == 0) {
     return Rejected("bracket", "it has no exposure", "record at least one");
   }
-  DivideByWeights(sums_);
-  BlankMaskedPixels(sums_);
+  FinishMerge(PixelsOf(sums_));
   sums_.history.push_back(absl::StrCat("MergeBracket(", exposures_, " exposures)"));
   exposures_ = 0;
   return std::exchange(sums_, {});

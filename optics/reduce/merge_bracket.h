@@ -7,6 +7,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "optics/reduce/measured_image.h"
+#include "optics/reduce/measured_row.h"
 
 namespace eyebox::optics {
 
@@ -25,6 +26,10 @@ class BracketMerger {
   int exposures_ = 0;
   MeasuredImage sums_;  // value: sum of weight * rate; variance: sum of weights; mask: reasons
 };
+
+// The same for some pixels: `sums` begin as zeros, take each exposure in and become the mean.
+void AddToMerge(const ConstMeasuredRow& rate, const MeasuredRow& sums);
+void FinishMerge(const MeasuredRow& sums);
 
 // The same for images that are all in memory. Errors: those of BracketMerger.
 absl::StatusOr<MeasuredImage> MergeBracket(std::span<const MeasuredImage> rates);

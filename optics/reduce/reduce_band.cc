@@ -5,113 +5,117 @@
 
 #include "capture/base/status.h"
 #include "optics/reduce/count_pixels.h"
+#include "optics/reduce/divide_by_exposure.h"
+#include "optics/reduce/linearise.h"
+#include "optics/reduce/measure_stack.h"
 #include "optics/reduce/merge_bracket.h"
 #include "optics/reduce/order_bracket.h"
 
 namespace eyebox::optics {
 namespace {
 
-// So that what the steps of one exposure write stays in a second-level cache.
-constexpr int kStripPixels = 1 << 14;
-
-// One exposure of a strip, and what it borrows.
-struct StripExposure {
-  Stack light;
-  DarkFrame dark;
-  Exposure exposure;
-};
-
-void Crop(const Exposure& whole, Rows rows, StripExposure& strip) {
-  const Stack& light = *whole.light;
-  strip.light = {light.setting, light.range, light.frames, CropRows(light.mean_dn, rows),
-                 CropRows(light.saturated_count, rows)};
-  if (!light.rejected_count.empty()) {
-    strip.light.rejected_count = CropRows(light.rejected_count, rows);
-  }
-  const MeasuredImage& dark = whole.dark->image_dn;
-  strip.dark.setting = whole.dark->setting;
-  strip.dark.image_dn = {CropRows(dark.value, rows), CropRows(dark.variance, rows),
-                         CropRows(dark.mask, rows), dark.unit, dark.history};
-  const Rows masked = {rows.first - whole.saturation_first_row,
-                       rows.end - whole.saturation_first_row};
-  strip.exposure = {&strip.light, &strip.dark, CropRows(whole.saturation, masked)};
-}
-
-void Count(const Exposure& exposure, const MeasuredImage& rate, PixelCounts& counts) {
-  counts.saturated += CountPixels(exposure.light->saturated_count.pixels(),
-                                  [](uint8_t frames) { return frames != 0; });
-  const auto mask = std::as_const(rate.mask).pixels();
+void Count(std::span<const uint8_t> saturated_count, std::span<const uint8_t> mask,
+           PixelCounts& counts) {
+  counts.saturated += CountPixels(saturated_count, [](uint8_t frames) { return frames != 0; });
   counts.underexposed += CountPixels(mask, [](uint8_t m) { return (m & kUnderexposed) != 0; });
   counts.valid += CountPixels(mask, [](uint8_t m) { return m == 0; });
 }
 
-class StripReducer {
+// A row goes through all steps while it is in the first-level cache.
+class RowReducer {
  public:
-  StripReducer(std::span<const Exposure> bracket, const Calibration& calibration,
-               const ReduceOptions& options, VarianceBudgetMeter& budget, BandSums& sums)
+  RowReducer(std::span<const Exposure> bracket, const Calibration& calibration,
+             const ReduceOptions& options, VarianceBudgetMeter& budget, BandSums& sums)
       : bracket_(bracket),
+        calibration_(calibration),
         options_(options),
         budget_(budget),
         sums_(sums),
-        defects_(calibration.defects) {
-    camera_.noise = calibration.noise;
-    camera_.linearity = calibration.linearity;
+        rates_{UnwrittenMeasuredImage({Width(), 1}, "DN/s"),
+               UnwrittenMeasuredImage({Width(), 1}, "DN/s")} {
     sums_.exposures.resize(bracket.size());
     sums_.pairs.resize(bracket.size() - 1);
   }
 
-  absl::StatusOr<MeasuredImage> Reduce(Rows rows, const Image<float>& expected) {
-    camera_.defects.defective = CropRows(defects_.defective, rows);
-    const size_t first_pixel = static_cast<size_t>(rows.first) * expected.size().width_px;
-    BracketMerger merger;
-    MeasuredImage shorter;
+  void Reduce(int y, std::span<const float> expected_dn_s, const MeasuredRow& merged) {
+    std::ranges::fill(merged.value, 0.0F);
+    std::ranges::fill(merged.variance, 0.0F);
+    std::ranges::fill(merged.mask, uint8_t{0});
+    const size_t first_pixel = static_cast<size_t>(y) * Width();
     for (size_t k = 0; k < bracket_.size(); ++k) {
-      StripExposure strip;
-      Crop(bracket_[k], rows, strip);
-      EYEBOX_ASSIGN_OR_RETURN(MeasuredImage rate,
-                              RateOf(strip.exposure, expected, camera_, options_));
-      Count(strip.exposure, rate, sums_.exposures[k]);
-      if (k > 0) AddPair(shorter, rate, expected, sums_.pairs[k - 1]);
-      EYEBOX_RETURN_IF_ERROR(merger.Add(rate));
-      budget_.Add(strip.exposure, rate, expected, first_pixel);
-      shorter = std::move(rate);
+      const Exposure& exposure = bracket_[k];
+      const MeasuredRow rate = PixelsOf(rates_[k % 2]);
+      MeasureRowAboveDark(exposure, y, expected_dn_s, calibration_.noise, calibration_.defects,
+                          options_.rail_guard_sigmas, rate);
+      if (calibration_.linearity) LinearisePixels(*calibration_.linearity, rate);
+      DividePixelsByExposure(exposure.light->setting.exposure_s, rate);
+      Count(exposure.light->saturated_count.row(y), rate.mask, sums_.exposures[k]);
+      if (k > 0) AddPair(PixelsOf(rates_[1 - k % 2]), rate, expected_dn_s, sums_.pairs[k - 1]);
+      AddToMerge(rate, merged);
+      budget_.Add(exposure, rate, expected_dn_s, first_pixel);
     }
-    return merger.Finish();
+    FinishMerge(merged);
   }
 
  private:
+  int Width() const { return bracket_[0].light->size().width_px; }
+
   std::span<const Exposure> bracket_;
+  const Calibration& calibration_;
   const ReduceOptions& options_;
   VarianceBudgetMeter& budget_;
   BandSums& sums_;
-  const DefectMap& defects_;
-  Calibration camera_;  // what the steps look at, of one strip
+  MeasuredImage rates_[2];  // of this exposure and of the one before
+};
+
+// The exposure without a pixel.
+struct Empty {
+  explicit Empty(const Exposure& whole) {
+    const Rows none = {0, 0};
+    light = {whole.light->setting, whole.light->range, whole.light->frames,
+             CropRows(whole.light->mean_dn, none), CropRows(whole.light->saturated_count, none)};
+    dark.setting = whole.dark->setting;
+    dark.image_dn = UnwrittenMeasuredImage(light.size(), whole.dark->image_dn.unit);
+    dark.image_dn.history = whole.dark->image_dn.history;
+  }
+  Stack light;
+  DarkFrame dark;
 };
 
 }  // namespace
 
-absl::StatusOr<BandSums> ReduceBand(std::span<const Exposure> bracket,
-                                    const Calibration& calibration, const ReduceOptions& options,
-                                    Rows rows, MeasuredImage& merged, VarianceBudgetMeter& budget) {
-  const auto [width, height] = merged.size();
+absl::StatusOr<std::vector<std::string>> HistoryOf(std::span<const Exposure> bracket,
+                                                   const Calibration& calibration,
+                                                   const ReduceOptions& options) {
+  Calibration camera;
+  camera.noise = calibration.noise;
+  camera.linearity = calibration.linearity;
+  BracketMerger merger;
+  for (const Exposure& exposure : bracket) {
+    const Empty empty(exposure);
+    camera.defects.defective = Image<uint8_t>(empty.light.size());
+    const Exposure of_nothing{&empty.light, &empty.dark, Image<uint8_t>(empty.light.size())};
+    EYEBOX_ASSIGN_OR_RETURN(const MeasuredImage rate,
+                            RateOf(of_nothing, Image<float>(empty.light.size()), camera, options));
+    EYEBOX_RETURN_IF_ERROR(merger.Add(rate));
+  }
+  EYEBOX_ASSIGN_OR_RETURN(MeasuredImage merged, merger.Finish());
+  return std::move(merged.history);
+}
+
+BandSums ReduceBand(std::span<const Exposure> bracket, const Calibration& calibration,
+                    const ReduceOptions& options, Rows rows, MeasuredImage& merged,
+                    VarianceBudgetMeter& budget) {
   std::vector<Exposure> masked;
   for (const Exposure& exposure : bracket) masked.push_back({exposure.light, exposure.dark, {}});
-  MaskSaturation(rows.Widened(options.smoothing_radius * options.colour_period_px, height), options,
-                 masked);
-  const Image<float> expected =
-      ExpectedRate(masked, calibration, {options.smoothing_radius, options.colour_period_px}, rows);
+  const int reach = options.smoothing_radius * options.colour_period_px;
+  MaskSaturation(rows.Widened(reach, merged.size().height_px), options, masked);
+  ExpectedRateRows expected(masked, calibration,
+                            {options.smoothing_radius, options.colour_period_px}, rows);
   BandSums sums;
-  StripReducer reducer(masked, calibration, options, budget, sums);
-  const int strip_rows = std::max(kStripPixels / width, 1);
-  for (int y = rows.first; y < rows.end; y += strip_rows) {
-    const Rows strip = {y, std::min(y + strip_rows, rows.end)};
-    const Rows in_band = {strip.first - rows.first, strip.end - rows.first};
-    EYEBOX_ASSIGN_OR_RETURN(MeasuredImage reduced,
-                            reducer.Reduce(strip, CropRows(expected, in_band)));
-    PasteRows(reduced.value, y, merged.value);
-    PasteRows(reduced.variance, y, merged.variance);
-    PasteRows(reduced.mask, y, merged.mask);
-    sums.history = std::move(reduced.history);
+  RowReducer reducer(masked, calibration, options, budget, sums);
+  for (int y = rows.first; y < rows.end; ++y) {
+    reducer.Reduce(y, expected.Next(), RowOf(merged, y));
   }
   return sums;
 }

@@ -1,5 +1,5 @@
 // The reduction of some rows of a bracket. A whole image at once would go through the memory for
-// every step; a band stays near the processor, and bands are independent of each other.
+// every step; a row stays near the processor, and bands of rows are independent of each other.
 #ifndef EYEBOX_OPTICS_REDUCE_REDUCE_BAND_H_
 #define EYEBOX_OPTICS_REDUCE_REDUCE_BAND_H_
 
@@ -27,15 +27,20 @@ struct PixelCounts {
 struct BandSums {
   std::vector<PixelCounts> exposures;  // as the bracket
   std::vector<PairSums> pairs;         // of neighbours in the bracket
-  std::vector<std::string> history;    // the same for all bands
 };
 
 // Expected rate, then for each exposure: mask, dark, linearity, rate, merge. Writes `rows` of
 // `merged` (value, variance and mask) and no others. The pixels are those that the steps give on
-// the whole image, bit by bit. Errors: those of the steps.
-absl::StatusOr<BandSums> ReduceBand(std::span<const Exposure> bracket,
-                                    const Calibration& calibration, const ReduceOptions& options,
-                                    Rows rows, MeasuredImage& merged, VarianceBudgetMeter& budget);
+// the whole image, bit by bit. A bracket that HistoryOf() takes does not fail.
+BandSums ReduceBand(std::span<const Exposure> bracket, const Calibration& calibration,
+                    const ReduceOptions& options, Rows rows, MeasuredImage& merged,
+                    VarianceBudgetMeter& budget);
+
+// What the steps write down about themselves, from taking them on no pixel at all. Errors: those
+// of the steps.
+absl::StatusOr<std::vector<std::string>> HistoryOf(std::span<const Exposure> bracket,
+                                                   const Calibration& calibration,
+                                                   const ReduceOptions& options);
 
 }  // namespace eyebox::optics
 

@@ -37,17 +37,17 @@ std::vector<Rows> BandsOf(ImageSize size) {
 }
 
 // In the order of the bands, so that the sums do not depend on which thread was faster.
-BandSums Total(const std::vector<absl::StatusOr<BandSums>>& bands) {
-  BandSums total = *bands[0];
+BandSums Total(const std::vector<BandSums>& bands) {
+  BandSums total = bands[0];
   for (size_t b = 1; b < bands.size(); ++b) {
     for (size_t k = 0; k < total.exposures.size(); ++k) {
-      const PixelCounts& counts = bands[b]->exposures[k];
+      const PixelCounts& counts = bands[b].exposures[k];
       total.exposures[k].saturated += counts.saturated;
       total.exposures[k].underexposed += counts.underexposed;
       total.exposures[k].valid += counts.valid;
     }
     for (size_t k = 0; k < total.pairs.size(); ++k) {
-      const PairSums& pair = bands[b]->pairs[k];
+      const PairSums& pair = bands[b].pairs[k];
       total.pairs[k].shorter += pair.shorter;
       total.pairs[k].longer += pair.longer;
       total.pairs[k].shorter_variance += pair.shorter_variance;
@@ -72,12 +72,53 @@ void ReportExposures(std::span<const Exposure> bracket, const BandSums& sums, si
   }
 }
 
+struct InvalidCounts {
+  size_t invalid = 0;
+  size_t all_saturated = 0;
+  size_t all_dark = 0;
+};
+
 void ReportInvalid(const MeasuredImage& merged, BracketReport& report) {
   const auto mask = merged.mask.pixels();
-  const auto share_of = [&](auto&& is) { return Share(CountPixels(mask, is), mask.size()); };
-  report.invalid_share = share_of([](uint8_t m) { return m != 0; });
-  report.all_saturated_share = share_of([](uint8_t m) { return m == kSaturated; });
-  report.all_dark_share = share_of([](uint8_t m) { return m == kUnderexposed; });
+  std::vector<InvalidCounts> pieces(ParallelPieces(mask.size()));
+  ForEachPieceInParallel(mask.size(), [&](size_t first, size_t end) {
+    const auto piece = mask.subspan(first, end - first);
+    pieces[first / kParallelPiece] = {
+        CountPixels(piece, [](uint8_t m) { return m != 0; }),
+        CountPixels(piece, [](uint8_t m) { return m == kSaturated; }),
+        CountPixels(piece, [](uint8_t m) { return m == kUnderexposed; })};
+  });
+  InvalidCounts total;
+  for (const InvalidCounts& piece : pieces) {
+    total.invalid += piece.invalid;
+    total.all_saturated += piece.all_saturated;
+    total.all_dark += piece.all_dark;
+  }
+  report.invalid_share = Share(total.invalid, mask.size());
+  report.all_saturated_share = Share(total.all_saturated, mask.size());
+  report.all_dark_share = Share(total.all_dark, mask.size());
+}
+
+// ReduceRate() without counting the invalid pixels.
+absl::StatusOr<ReducedRate> Merge(std::span<const Stack> exposures, const Calibration& calibration,
+                                  const ReduceOptions& options) {
+  EYEBOX_ASSIGN_OR_RETURN(const std::vector<Exposure> bracket,
+                          OrderBracket(exposures, calibration));
+  const ImageSize size = bracket[0].light->size();
+  ReducedRate reduced;
+  reduced.rate = UnwrittenMeasuredImage(size, "DN/s");
+  EYEBOX_ASSIGN_OR_RETURN(reduced.rate.history, HistoryOf(bracket, calibration, options));
+  VarianceBudgetMeter budget(calibration.noise, calibration.linearity, size);
+  const std::vector<Rows> bands = BandsOf(size);
+  std::vector<BandSums> sums(bands.size());
+  ForEachInParallel(static_cast<int>(bands.size()), [&](int b) {
+    sums[b] = ReduceBand(bracket, calibration, options, bands[b], reduced.rate, budget);
+  });
+  const BandSums total = Total(sums);
+  ReportExposures(bracket, total, size.PixelCount(), reduced.report);
+  reduced.report.hot_share = calibration.defects.hot_share;
+  reduced.report.budget = budget.Mean();
+  return reduced;
 }
 
 }  // namespace
@@ -85,23 +126,7 @@ void ReportInvalid(const MeasuredImage& merged, BracketReport& report) {
 absl::StatusOr<ReducedRate> ReduceRate(std::span<const Stack> exposures,
                                        const Calibration& calibration,
                                        const ReduceOptions& options) {
-  EYEBOX_ASSIGN_OR_RETURN(const std::vector<Exposure> bracket,
-                          OrderBracket(exposures, calibration));
-  const ImageSize size = bracket[0].light->size();
-  ReducedRate reduced;
-  reduced.rate = UnwrittenMeasuredImage(size, "DN/s");
-  VarianceBudgetMeter budget(calibration.noise, calibration.linearity, size);
-  const std::vector<Rows> bands = BandsOf(size);
-  std::vector<absl::StatusOr<BandSums>> sums(bands.size());
-  ForEachInParallel(static_cast<int>(bands.size()), [&](int b) {
-    sums[b] = ReduceBand(bracket, calibration, options, bands[b], reduced.rate, budget);
-  });
-  for (const auto& band : sums) EYEBOX_RETURN_IF_ERROR(band.status());
-  const BandSums total = Total(sums);
-  reduced.rate.history = total.history;
-  ReportExposures(bracket, total, size.PixelCount(), reduced.report);
-  reduced.report.hot_share = calibration.defects.hot_share;
-  reduced.report.budget = budget.Mean();
+  EYEBOX_ASSIGN_OR_RETURN(ReducedRate reduced, Merge(exposures, calibration, options));
   ReportInvalid(reduced.rate, reduced.report);
   return reduced;
 }
@@ -109,7 +134,7 @@ absl::StatusOr<ReducedRate> ReduceRate(std::span<const Stack> exposures,
 absl::StatusOr<ReducedLevel> ReduceLevel(std::span<const Stack> exposures,
                                          const Calibration& calibration,
                                          const ReduceOptions& options) {
-  EYEBOX_ASSIGN_OR_RETURN(ReducedRate reduced, ReduceRate(exposures, calibration, options));
+  EYEBOX_ASSIGN_OR_RETURN(ReducedRate reduced, Merge(exposures, calibration, options));
   std::optional<KnownLuminance> per_unit = calibration.luminance_of_one_dn_per_s;
   MeasuredImage image = std::move(reduced.rate);
   if (calibration.flat.has_value()) {
@@ -117,10 +142,10 @@ absl::StatusOr<ReducedLevel> ReduceLevel(std::span<const Stack> exposures,
     EYEBOX_ASSIGN_OR_RETURN(image, DivideByFlat(std::move(image), response, options.flat_minimum));
     reduced.report.budget = WithFlat(reduced.report.budget, image, response);
     if (calibration.flat->luminance.has_value()) per_unit = calibration.flat->luminance;
-    ReportInvalid(image, reduced.report);
   } else {
     image.history.push_back("no flat: vignetting and pixel response stay in the image");
   }
+  ReportInvalid(image, reduced.report);
   EYEBOX_ASSIGN_OR_RETURN(LuminanceImage luminance,
                           ScaleLuminance(std::move(image), calibration.flat.has_value(), per_unit));
   reduced.report.budget =

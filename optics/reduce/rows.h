@@ -30,13 +30,6 @@ Image<T> CropRows(const Image<T>& image, Rows rows) {
   return cropped;
 }
 
-// `part` becomes the rows of `image` from `first` on.
-template <typename T>
-void PasteRows(const Image<T>& part, int first, Image<T>& image) {
-  const auto target = image.pixels().subspan(static_cast<size_t>(first) * image.size().width_px);
-  std::copy(part.pixels().begin(), part.pixels().end(), target.begin());
-}
-
 }  // namespace eyebox::optics
 
 #endif  // EYEBOX_OPTICS_REDUCE_ROWS_H_

@@ -67,20 +67,20 @@ VarianceBudgetMeter::VarianceBudgetMeter(const NoiseModel& noise,
       stride_(StrideFor(size.PixelCount())),
       pixels_((size.PixelCount() + stride_ - 1) / stride_) {}
 
-void VarianceBudgetMeter::Add(const Exposure& exposure, const MeasuredImage& rate,
-                              const Image<float>& expected_rate_dn_s, size_t first) {
+void VarianceBudgetMeter::Add(const Exposure& exposure, const ConstMeasuredRow& rate,
+                              std::span<const float> expected_rate_dn_s, size_t first) {
   const Setting& setting = exposure.light->setting;
-  const size_t end = first + rate.mask.pixels().size();
+  const size_t end = first + rate.size();
   for (size_t k = (first + stride_ - 1) / stride_; k * stride_ < end; ++k) {
     const size_t i = k * stride_ - first;
-    if (rate.mask.pixels()[i] != 0) continue;
-    const double variance = rate.variance.pixels()[i];
-    const double expected_dn = expected_rate_dn_s.pixels()[i] * setting.exposure_s;
+    if (rate.mask[i] != 0) continue;
+    const double variance = rate.variance[i];
+    const double expected_dn = expected_rate_dn_s[i] * setting.exposure_s;
     const LinearityCurve::Corrected corrected =
         linearity_ ? linearity_->At(expected_dn) : LinearityCurve::Corrected{};
     const VarianceBudget terms =
-        TermsOf(noise_, corrected, setting, FramesAt(*exposure.light, i), expected_dn,
-                exposure.dark->image_dn.value.pixels()[i], variance);
+        TermsOf(noise_, corrected, setting, FramesAt(*exposure.light, first + i), expected_dn,
+                exposure.dark->image_dn.value.pixels()[first + i], variance);
     AddScaled(terms, 1 / (variance * variance), pixels_[k].terms);
     pixels_[k].weight += 1 / variance;
   }

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "capture/base/image.h"
@@ -11,6 +12,7 @@
 #include "optics/reduce/expected_rate.h"
 #include "optics/reduce/linearise.h"
 #include "optics/reduce/measured_image.h"
+#include "optics/reduce/measured_row.h"
 #include "optics/sensor/noise_model.h"
 
 namespace eyebox::optics {
@@ -22,11 +24,11 @@ class VarianceBudgetMeter {
   VarianceBudgetMeter(const NoiseModel& noise, const std::optional<LinearityCurve>& linearity,
                       ImageSize size);
 
-  // An exposure and its rate image in DN/s, as it enters the merge.
-  // The arguments may be a part of the image that begins at its pixel `first`: disjoint parts may
-  // be added at the same time, the exposures of one part in one order.
-  void Add(const Exposure& exposure, const MeasuredImage& rate,
-           const Image<float>& expected_rate_dn_s, size_t first = 0);
+  // A whole exposure and some pixels of its rate in DN/s as they enter the merge, with what is
+  // expected of them; `first` is the first one's place in the image. Disjoint parts may be added at
+  // the same time, the exposures of one part in one order.
+  void Add(const Exposure& exposure, const ConstMeasuredRow& rate,
+           std::span<const float> expected_rate_dn_s, size_t first = 0);
 
   // Each share to 1e-14. All zero if no sampled pixel is valid.
   VarianceBudget Mean() const;

@@ -106,7 +106,6 @@ BENCHMARK(WholeRun)
     ->Args({1280, 960, 17})
     ->Args({2048, 1536, 17})
     ->Args({4096, 3000, 5})
-    ->Args({4096, 3000, 17})
     ->Iterations(3)
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);

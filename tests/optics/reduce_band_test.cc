@@ -46,17 +46,23 @@ Calibration Calibrate(std::mt19937& random) {
   return calibration;
 }
 
-MeasuredImage StepByStep(std::span<const Stack> stacks, const Calibration& calibration,
-                         const ReduceOptions& options) {
+struct Plain {
+  MeasuredImage merged;
+  ExposurePairCheck first_pair;
+};
+
+Plain StepByStep(std::span<const Stack> stacks, const Calibration& calibration,
+                 const ReduceOptions& options) {
   auto bracket = *OrderBracket(stacks, calibration);
   MaskSaturation(AllRows(kSize), options, bracket);
   const Image<float> expected =
       ExpectedRate(bracket, calibration, {options.smoothing_radius, options.colour_period_px});
-  BracketMerger merger;
+  std::vector<MeasuredImage> rates;
   for (const Exposure& exposure : bracket) {
-    EXPECT_TRUE(merger.Add(*RateOf(exposure, expected, calibration, options)).ok());
+    rates.push_back(*RateOf(exposure, expected, calibration, options));
   }
-  return *merger.Finish();
+  return {*MergeBracket(rates),
+          CompareExposures(rates[0], kExposures[0], rates[1], kExposures[1], expected)};
 }
 
 bool SameBits(const Image<float>& a, const Image<float>& b) {
@@ -65,14 +71,36 @@ bool SameBits(const Image<float>& a, const Image<float>& b) {
       [](float x, float y) { return std::bit_cast<uint32_t>(x) == std::bit_cast<uint32_t>(y); });
 }
 
+LinearityCurve SlightlyBent() {
+  LinearityCurve curve;
+  curve.knots_dn = {0, 500, 4095};
+  curve.corrected_dn = {0, 505, 4000};
+  curve.variance_dn2 = {0, 0.5, 2};
+  curve.from_dn = 100;
+  curve.to_dn = 4095;
+  return curve;
+}
+
+// Frames of which one was left out here and there.
+void RejectSome(Stack& stack, std::mt19937& random) {
+  stack.rejected_count = Image<uint8_t>(stack.size());
+  for (int k = 0; k < 500; ++k) {
+    stack.rejected_count.pixels()[random() % kSize.PixelCount()] = 1;
+  }
+}
+
 TEST(ReduceBandTest, BandsGiveTheBitsOfTheStepsOnTheWholeImage) {
   std::mt19937 random(5);
-  const Calibration calibration = Calibrate(random);
+  Calibration calibration = Calibrate(random);
   std::vector<Stack> stacks;
   for (const double t : kExposures) stacks.push_back(Draw(t, 90000, 3, random));
+  RejectSome(stacks[1], random);
   for (const int period : {1, 2}) {
-    const ReduceOptions options{.saturation_dilation = 2, .colour_period_px = period};
-    const MeasuredImage plain = StepByStep(stacks, calibration, options);
+    if (period == 2) calibration.linearity = SlightlyBent();
+    const ReduceOptions options{.saturation_dilation = 2,
+                                .smoothing_radius = period == 1 ? 2 : 1,
+                                .colour_period_px = period};
+    const auto [plain, pair] = StepByStep(stacks, calibration, options);
     const ReducedRate banded = *ReduceRate(stacks, calibration, options);
     EXPECT_TRUE(SameBits(banded.rate.value, plain.value));
     EXPECT_TRUE(SameBits(banded.rate.variance, plain.variance));
@@ -80,6 +108,9 @@ TEST(ReduceBandTest, BandsGiveTheBitsOfTheStepsOnTheWholeImage) {
     EXPECT_EQ(banded.rate.history, plain.history);
     EXPECT_GT(banded.report.exposures.back().saturated, 0.5);
     EXPECT_NEAR(banded.report.pairs[0].ratio, 1, 0.02);
+    EXPECT_EQ(banded.report.pairs[0].pixels, pair.pixels);
+    EXPECT_NEAR(banded.report.pairs[0].ratio / pair.ratio, 1, 1e-9);
+    EXPECT_NEAR(banded.report.pairs[0].sigma / pair.sigma, 1, 1e-6);
   }
 }
 

@@ -227,6 +227,33 @@ TEST(BoxMeanTest, StaysWithinOneColourAndLeavesInvalidPixelsOut) {
   EXPECT_THAT(mean.pixels(), ::testing::ElementsAre(2, 150, 2, 200, 3, 250));
 }
 
+TEST(BoxMeanTest, IsTheMeanOfEachWindow) {
+  std::mt19937 random(4);
+  Image<float> image({23, 17});
+  for (float& pixel : image.pixels()) {
+    pixel = random() % 7 == 0 ? kNoValue : static_cast<float>(random() % 1000);
+  }
+  for (const int radius : {1, 2, 3}) {
+    for (const int step : {1, 2}) {
+      const Image<float> mean = BoxMean(image, radius, step);
+      for (int y = 0; y < 17; ++y) {
+        for (int x = 0; x < 23; ++x) {
+          double sum = 0;
+          int count = 0;
+          for (int j = y - radius * step; j <= y + radius * step; j += step) {
+            for (int i = x - radius * step; i <= x + radius * step; i += step) {
+              if (i < 0 || i >= 23 || j < 0 || j >= 17 || std::isnan(image.at(i, j))) continue;
+              sum += image.at(i, j);
+              ++count;
+            }
+          }
+          ASSERT_FLOAT_EQ(mean.at(x, y), static_cast<float>(sum / count));
+        }
+      }
+    }
+  }
+}
+
 TEST(BoxMeanTest, WindowOfNothingHasNoMean) {
   const Image<float> mean = BoxMean(Image<float>({3, 3}, kNoValue), 1, 1);
   EXPECT_TRUE(std::isnan(mean.at(1, 1)));

@@ -21,11 +21,12 @@ using Matrix = Eigen::MatrixXd;
 
 Matrix JacobianAt(const GlareModel& model, const GlareCoordinates& optimum,
                   const std::vector<int>& free) {
-  Matrix jacobian(model.series().readings.size(), free.size());
-  for (size_t k = 0; k < free.size(); ++k) {
-    const std::vector<double> column = model.Derivative(optimum, free[k]);
-    jacobian.col(static_cast<Eigen::Index>(k)) =
-        Eigen::Map<const Eigen::VectorXd>(column.data(), jacobian.rows());
+  const GlareEvaluation found = model.Evaluate(optimum);
+  Matrix jacobian(found.residuals.size(), free.size());
+  for (Eigen::Index i = 0; i < jacobian.rows(); ++i) {
+    for (size_t k = 0; k < free.size(); ++k) {
+      jacobian(i, static_cast<Eigen::Index>(k)) = found.jacobian[i * kGlareParameters + free[k]];
+    }
   }
   return jacobian;
 }

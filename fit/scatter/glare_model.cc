@@ -6,7 +6,6 @@
 namespace eyebox::fit {
 namespace {
 
-constexpr double kStep = 1e-4;  // of coordinates: errors of differences about 1e-8
 constexpr double kLargestLogit = 18;
 
 double Logistic(double x) { return 1 / (1 + std::exp(-x)); }
@@ -14,6 +13,22 @@ double Logistic(double x) { return 1 / (1 + std::exp(-x)); }
 double Logit(double share) {
   if (!(share > 0)) return -kLargestLogit;
   return std::clamp(std::log(share / (1 - share)), -kLargestLogit, kLargestLogit);
+}
+
+double LightThrough(const optics::ScatterKernel& kernel, const PartLight& light) {
+  return kernel.CoreShare() * light.core.energy + kernel.tail_share * light.tail.energy +
+         kernel.pedestal_share * light.pedestal;
+}
+
+// Its derivatives by the kernel's parameters, in their own units.
+GlareValues LightSlopes(const optics::ScatterKernel& kernel, const PartLight& light) {
+  GlareValues slopes{};
+  slopes[kCoreRadius] = kernel.CoreShare() * light.core.by_radius / kernel.core_radius_deg;
+  slopes[kTailShare] = light.tail.energy - light.core.energy;
+  slopes[kTailRadius] = kernel.tail_share * light.tail.by_radius / kernel.tail_radius_deg;
+  slopes[kTailExponent] = kernel.tail_share * light.tail.by_exponent / kernel.tail_exponent;
+  slopes[kPedestalShare] = light.pedestal - light.core.energy;
+  return slopes;
 }
 
 }  // namespace
@@ -24,32 +39,10 @@ optics::ScatterKernel KernelOf(const GlareValues& values, const ScatterFitOption
 }
 
 GlareModel::GlareModel(const GlareSeries& series, const ScatterFitOptions& options)
-    : series_(series), options_(options), luminance_unit_(series.LargestLuminance() / 100) {
-  if (!options_.instrument.has_value()) return;
-  const optics::RadialWeight first(options_.instrument->kernel);
-  for (const GlareReading& reading : series_.readings) {
-    std::vector<double> radii = {reading.diameter_deg / 2, series_.field_radius_deg};
-    for (const FieldRing& ring : series_.field) radii.push_back(ring.outer_radius_deg);
-    for (const double radius : radii) {
-      const DiskKey key{radius, reading.offset_deg};
-      if (after_instrument_.contains(key)) continue;
-      after_instrument_.emplace(key, optics::SecondScatterer(first, {key.first, key.second}));
-    }
-  }
-}
-
-// Disks of falling brightness, laid over each other: each ring less the next over all within it.
-double GlareModel::LightIn(const optics::RadialWeight& weight, const DiskKey& disk) const {
-  if (series_.field.empty()) return EnergyIn(weight, disk);
-  double light = 0;
-  for (size_t k = 0; k < series_.field.size(); ++k) {
-    const auto [outer, relative] = series_.field[k];
-    if (outer >= disk.first) return light + relative * EnergyIn(weight, disk);
-    const double next = k + 1 < series_.field.size() ? series_.field[k + 1].relative : 0;
-    if (relative != next) light += (relative - next) * EnergyIn(weight, {outer, disk.second});
-  }
-  return light;
-}
+    : series_(series),
+      options_(options),
+      luminance_unit_(series.LargestLuminance() / 100),
+      table_(series, options) {}
 
 std::vector<int> GlareModel::Free() const {
   const std::array<bool, kGlareParameters> held = {options_.core_radius_deg.has_value(),
@@ -92,42 +85,30 @@ GlareCoordinates GlareModel::CoordinatesOf(const GlareValues& values) const {
 
 std::array<GlareCoordinates, kGlareParameters> GlareModel::ValueDerivatives(
     const GlareCoordinates& coordinates) const {
+  const GlareValues values = ValuesOf(coordinates);
   std::array<GlareCoordinates, kGlareParameters> derivatives{};
-  for (int j = 0; j < kGlareParameters; ++j) {
-    GlareCoordinates above = coordinates;
-    GlareCoordinates below = coordinates;
-    above[j] += kStep;
-    below[j] -= kStep;
-    const GlareValues high = ValuesOf(above);
-    const GlareValues low = ValuesOf(below);
-    for (int i = 0; i < kGlareParameters; ++i) {
-      derivatives[i][j] = (high[i] - low[i]) / (2 * kStep);
-    }
+  for (const int i : {kCoreRadius, kTailRadius, kTailExponent, kBright}) {
+    derivatives[i][i] = values[i];
   }
+  const double tail = values[kTailShare];
+  derivatives[kTailShare][kTailShare] = tail * (1 - tail);
+  if (options_.pedestal) {
+    const double of_rest = Logistic(coordinates[kPedestalShare]);
+    derivatives[kPedestalShare][kPedestalShare] = of_rest * (1 - of_rest) * (1 - tail);
+    derivatives[kPedestalShare][kTailShare] = -of_rest * tail * (1 - tail);
+  }
+  derivatives[kBackground][kBackground] = luminance_unit_;
   return derivatives;
 }
 
-double GlareModel::EnergyIn(const optics::RadialWeight& weight, const DiskKey& disk) const {
-  const auto found = after_instrument_.find(disk);
-  if (found != after_instrument_.end()) return found->second.EnergyInDisk(weight);
-  return optics::EnergyInDisk(weight, {disk.first, disk.second});
-}
-
 std::vector<GlareShares> GlareModel::Shares(const optics::ScatterKernel& kernel) const {
-  const optics::RadialWeight weight(kernel);
-  std::map<double, double> field_energy;  // by offset
+  const std::vector<ReadingLight> light = table_.LightFor(kernel);
   std::vector<GlareShares> shares;
-  shares.reserve(series_.readings.size());
-  for (const GlareReading& reading : series_.readings) {
-    const auto [field, is_new] = field_energy.try_emplace(reading.offset_deg);
-    if (is_new) {
-      const double whole =
-          series_.field.empty() ? series_.field_radius_deg : series_.field.back().outer_radius_deg;
-      field->second = LightIn(weight, {whole, reading.offset_deg});
-    }
-    const double disk = LightIn(weight, {reading.diameter_deg / 2, reading.offset_deg});
-    const double rest = std::max(field->second - disk, 0.0);
-    const bool bright = reading.pattern == GlarePattern::kBrightDisk;
+  shares.reserve(light.size());
+  for (size_t i = 0; i < light.size(); ++i) {
+    const double disk = LightThrough(kernel, light[i].disk);
+    const double rest = std::max(LightThrough(kernel, light[i].rest), 0.0);
+    const bool bright = series_.readings[i].pattern == GlarePattern::kBrightDisk;
     shares.push_back(bright ? GlareShares{disk, rest} : GlareShares{rest, disk});
   }
   return shares;
@@ -141,26 +122,40 @@ std::vector<double> GlareModel::Predict(const GlareValues& values) const {
   return predicted;
 }
 
-std::vector<double> GlareModel::Residuals(const GlareCoordinates& coordinates) const {
-  std::vector<double> residuals = Predict(ValuesOf(coordinates));
-  for (size_t i = 0; i < residuals.size(); ++i) {
-    const GlareReading& reading = series_.readings[i];
-    residuals[i] = (residuals[i] - reading.luminance) / reading.luminance_sigma;
+GlareEvaluation GlareModel::Evaluate(const GlareCoordinates& coordinates) const {
+  const GlareValues values = ValuesOf(coordinates);
+  const optics::ScatterKernel kernel = KernelOf(values, options_);
+  const auto by_coordinate = ValueDerivatives(coordinates);
+  GlareEvaluation result;
+  for (const ReadingLight& light : table_.LightFor(kernel)) {
+    const GlareReading& reading = series_.readings[result.residuals.size()];
+    const bool bright = reading.pattern == GlarePattern::kBrightDisk;
+    const double disk_luminance = values[bright ? kBright : kBackground];
+    const double rest_luminance = values[bright ? kBackground : kBright];
+    const double disk = LightThrough(kernel, light.disk);
+    const double rest = LightThrough(kernel, light.rest);
+    const GlareValues disk_slopes = LightSlopes(kernel, light.disk);
+    const GlareValues rest_slopes = LightSlopes(kernel, light.rest);
+    GlareValues by_value{};
+    for (int i = 0; i < kKernelParameters; ++i) {
+      by_value[i] = disk_luminance * disk_slopes[i] + rest_luminance * rest_slopes[i];
+    }
+    by_value[kBright] = bright ? disk : rest;
+    by_value[kBackground] = bright ? rest : disk;
+    const double predicted =
+        by_value[kBright] * values[kBright] + by_value[kBackground] * values[kBackground];
+    result.residuals.push_back((predicted - reading.luminance) / reading.luminance_sigma);
+    for (int j = 0; j < kGlareParameters; ++j) {
+      double slope = 0;
+      for (int i = 0; i < kGlareParameters; ++i) slope += by_value[i] * by_coordinate[i][j];
+      result.jacobian.push_back(slope / reading.luminance_sigma);
+    }
   }
-  return residuals;
+  return result;
 }
 
-std::vector<double> GlareModel::Derivative(const GlareCoordinates& coordinates, int index) const {
-  GlareCoordinates above = coordinates;
-  GlareCoordinates below = coordinates;
-  above[index] += kStep;
-  below[index] -= kStep;
-  std::vector<double> derivative = Residuals(above);
-  const std::vector<double> low = Residuals(below);
-  for (size_t i = 0; i < low.size(); ++i) {
-    derivative[i] = (derivative[i] - low[i]) / (2 * kStep);
-  }
-  return derivative;
+std::vector<double> GlareModel::Residuals(const GlareCoordinates& coordinates) const {
+  return Evaluate(coordinates).residuals;
 }
 
 }  // namespace eyebox::fit

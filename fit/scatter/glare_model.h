@@ -3,15 +3,12 @@
 #define EYEBOX_FIT_SCATTER_GLARE_MODEL_H_
 
 #include <array>
-#include <map>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "fit/scatter/fit_scatter.h"
-#include "optics/scatter/disk_energy.h"
+#include "fit/scatter/light_table.h"
 
 namespace eyebox::fit {
 
@@ -43,6 +40,11 @@ struct GlareShares {
   double background = 0;
 };
 
+struct GlareEvaluation {
+  std::vector<double> residuals;  // (predicted - measured) / sigma, [readings]
+  std::vector<double> jacobian;   // their derivatives by the coordinates, [readings, 7] row-major
+};
+
 class GlareModel {
  public:
   // Both must be valid. Tabulates what the instrument alone does.
@@ -54,27 +56,20 @@ class GlareModel {
 
   GlareValues ValuesOf(const GlareCoordinates& coordinates) const;
   GlareCoordinates CoordinatesOf(const GlareValues& values) const;
-  // Derivatives of values by coordinates, [7][7].
+  // Derivatives of values by coordinates, [value][coordinate].
   std::array<GlareCoordinates, kGlareParameters> ValueDerivatives(
       const GlareCoordinates& coordinates) const;
 
   std::vector<GlareShares> Shares(const optics::ScatterKernel& kernel) const;
   std::vector<double> Predict(const GlareValues& values) const;
-  // (predicted - measured) / sigma, one for each reading.
+  GlareEvaluation Evaluate(const GlareCoordinates& coordinates) const;
   std::vector<double> Residuals(const GlareCoordinates& coordinates) const;
-  // Derivative of the residuals by one coordinate, central difference.
-  std::vector<double> Derivative(const GlareCoordinates& coordinates, int index) const;
 
  private:
-  using DiskKey = std::pair<double, double>;  // radius, offset
-  double EnergyIn(const optics::RadialWeight& weight, const DiskKey& disk) const;
-  // The same of light that varies as the series' field does; radius as if it were even.
-  double LightIn(const optics::RadialWeight& weight, const DiskKey& disk) const;
-
   GlareSeries series_;
   ScatterFitOptions options_;
   double luminance_unit_;
-  std::map<DiskKey, optics::SecondScatterer> after_instrument_;
+  LightTable table_;
 };
 
 struct GlareSolution {

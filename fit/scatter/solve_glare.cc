@@ -30,13 +30,14 @@ class GlareResiduals final : public ceres::CostFunction {
                 double** jacobians) const override {
     GlareCoordinates coordinates = held_;
     for (size_t k = 0; k < free_.size(); ++k) coordinates[free_[k]] = parameters[0][k];
-    const std::vector<double> values = model_.Residuals(coordinates);
-    std::ranges::copy(values, residuals);
-    const bool finite = std::ranges::all_of(values, [](double r) { return std::isfinite(r); });
+    const GlareEvaluation found = model_.Evaluate(coordinates);
+    std::ranges::copy(found.residuals, residuals);
+    const bool finite =
+        std::ranges::all_of(found.residuals, [](double r) { return std::isfinite(r); });
     if (!finite || jacobians == nullptr || jacobians[0] == nullptr) return finite;
-    for (size_t k = 0; k < free_.size(); ++k) {
-      const std::vector<double> column = model_.Derivative(coordinates, free_[k]);
-      for (size_t i = 0; i < column.size(); ++i) jacobians[0][i * free_.size() + k] = column[i];
+    double* next = jacobians[0];
+    for (size_t i = 0; i < found.residuals.size(); ++i) {
+      for (const int j : free_) *next++ = found.jacobian[i * kGlareParameters + j];
     }
     return true;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace eyebox::optics {
@@ -13,11 +14,20 @@ constexpr double kTablePerE = 100;  // likewise, where values are interpolated
 constexpr int kAngles = 48;
 constexpr int kAcrossDisk = 96;  // radii across a disk off the axis
 
+constexpr double kMostEdgeSteps = 4096;
+
+// Steps around the disk's edge that resolve how far it is from the axis.
+int EdgeStepsFor(const Disk& disk) {
+  const double gap = std::abs(disk.radius_deg - std::abs(disk.offset_deg));
+  return static_cast<int>(
+      std::clamp(20 * disk.radius_deg / std::max(gap, 1e-12), 96.0, kMostEdgeSteps));
+}
+
 // Steps around the disk's edge, fine enough to resolve the core where the edge runs through it.
 int EdgeSteps(const RadialWeight& weight, const Disk& disk) {
   const double gap = std::abs(disk.radius_deg - std::abs(disk.offset_deg));
   const double finest = std::max(weight.kernel().core_radius_deg, gap);
-  return static_cast<int>(std::clamp(16 * disk.radius_deg / finest, 96.0, 4096.0));
+  return static_cast<int>(std::clamp(16 * disk.radius_deg / finest, 96.0, kMostEdgeSteps));
 }
 
 double FirstNode(double disk_radius_deg) {
@@ -116,6 +126,22 @@ double EnergyInDisk(const RadialWeight& weight, const Disk& disk) {
   return std::clamp(a * sum / steps, 0.0, 1.0);
 }
 
+EnergySum EnergySumOf(const Disk& disk) {
+  const double a = disk.radius_deg;
+  const double rho = std::abs(disk.offset_deg);
+  if (!(a > 0)) return {};
+  if (rho == 0) return {{a}, {1}};
+  const int steps = EdgeStepsFor(disk);
+  EnergySum sum;
+  for (int k = steps - 1; k >= 0; --k) {
+    const double cosine = std::cos(std::numbers::pi * (k + 0.5) / steps);
+    const double square = std::max(rho * rho + a * a + 2 * rho * a * cosine, 1e-30);
+    sum.radius_deg.push_back(std::sqrt(square));
+    sum.factor.push_back(a * (a + rho * cosine) / square / steps);
+  }
+  return sum;
+}
+
 SecondScatterer::SecondScatterer(const RadialWeight& first, const Disk& disk)
     : radius_deg_(Radii(first, disk)) {
   energy_.reserve(radius_deg_.size());
@@ -141,6 +167,19 @@ double SecondScatterer::EnergyInDisk(const RadialWeight& second) const {
     within = next;
   }
   return sum + (1 - within) * energy_.back();
+}
+
+// By parts: what is between two radii counts with the mean of both energies.
+EnergySum SecondScatterer::Sum() const {
+  EnergySum sum;
+  const size_t last = radius_deg_.size() - 1;
+  for (size_t i = 1; i <= last; ++i) {
+    sum.radius_deg.push_back(radius_deg_[i]);
+    sum.factor.push_back(0.5 * (energy_[i - 1] - energy_[std::min(i + 1, last)]));
+  }
+  sum.radius_deg.push_back(std::numeric_limits<double>::infinity());
+  sum.factor.push_back(energy_[last]);
+  return sum;
 }
 
 }  // namespace eyebox::optics

@@ -12,11 +12,32 @@ namespace {
 
 constexpr double kExponentMin = 0.1;
 constexpr double kExponentMax = 40;
+constexpr double kGaussianEnd = 9;  // core radii: exp(-9^2 / 2) is below the rounding of 1
 
 // Integral of u^(k - 1) over u from 1 to q, given log q; the logarithm at k = 0. expm1 keeps all
 // digits however small its argument, until products leave the range of doubles.
 double PowerIntegral(double k, double log_q) {
   return std::abs(k) < 1e-18 ? log_q : std::expm1(k * log_q) / k;
+}
+
+// Its derivative by k.
+double PowerIntegralSlope(double k, double log_q) {
+  const double x = k * log_q;
+  if (std::abs(x) > 0.1) return (x * std::exp(x) - std::expm1(x)) / (k * k);
+  // The sum of x^n / (n! (n + 2)): the difference above loses its digits.
+  double sum = 0;
+  double power = 1;
+  for (int n = 0; n < 12; ++n) {
+    sum += power / (n + 2);
+    power *= x / (n + 1);
+  }
+  return sum * log_q * log_q;
+}
+
+PartEnergy Normalised(const PartEnergy& part, const PartEnergy& whole) {
+  const double energy = part.energy / whole.energy;
+  return {energy, (part.by_radius - energy * whole.by_radius) / whole.energy,
+          (part.by_exponent - energy * whole.by_exponent) / whole.energy};
 }
 
 }  // namespace
@@ -57,8 +78,8 @@ ScatterKernel CoreOf(const ScatterKernel& kernel) {
 }
 
 RadialWeight::RadialWeight(const ScatterKernel& kernel) : kernel_(kernel) {
-  core_norm_ = CoreEnergy(kernel.reach_deg);
-  tail_norm_ = TailMass(kernel.reach_deg);
+  core_whole_ = CoreSlopes(kernel.reach_deg);
+  tail_whole_ = TailSlopes(kernel.reach_deg);
 }
 
 double RadialWeight::CoreEnergy(double radius_deg) const {
@@ -75,11 +96,48 @@ double RadialWeight::TailMass(double radius_deg) const {
   return q <= 1 ? q : 1 + PowerIntegral(k, std::log(q));
 }
 
+PartEnergy RadialWeight::CoreSlopes(double radius_deg) const {
+  const double ratio = radius_deg / kernel_.core_radius_deg;
+  const double energy = CoreEnergy(radius_deg);
+  if (kernel_.core == CoreShape::kDisk) return {energy, ratio < 1 ? -2 * energy : 0};
+  return {energy, -ratio * ratio * std::exp(-0.5 * ratio * ratio)};
+}
+
+PartEnergy RadialWeight::TailSlopes(double radius_deg) const {
+  const double ratio = radius_deg / kernel_.tail_radius_deg;
+  const double q = ratio * ratio;
+  const double k = 1 - kernel_.tail_exponent / 2;
+  const bool moffat = kernel_.tail == TailShape::kMoffat;
+  if (!moffat && q <= 1) return {q, -2 * q};
+  const double log_q = moffat ? std::log1p(q) : std::log(q);
+  const double density = std::exp((k - 1) * log_q);  // over that on the axis
+  return {TailMass(radius_deg), -2 * q * density,
+          -kernel_.tail_exponent / 2 * PowerIntegralSlope(k, log_q)};
+}
+
+PartEnergy RadialWeight::CoreWithin(double radius_deg) const {
+  if (!(radius_deg > 0)) return {};
+  if (radius_deg >= kernel_.reach_deg) return {1};
+  return Normalised(CoreSlopes(radius_deg), core_whole_);
+}
+
+PartEnergy RadialWeight::TailWithin(double radius_deg) const {
+  if (!(radius_deg > 0)) return {};
+  if (radius_deg >= kernel_.reach_deg) return {1};
+  return Normalised(TailSlopes(radius_deg), tail_whole_);
+}
+
+double RadialWeight::CoreEndDeg() const {
+  const double cores = kernel_.core == CoreShape::kDisk ? 1 : kGaussianEnd;
+  return std::fmin(cores * kernel_.core_radius_deg, kernel_.reach_deg);
+}
+
 double RadialWeight::EnergyWithin(double radius_deg) const {
   if (!(radius_deg > 0)) return 0;
   if (radius_deg >= kernel_.reach_deg) return 1;
-  double energy = kernel_.CoreShare() * CoreEnergy(radius_deg) / core_norm_;
-  if (kernel_.tail_share > 0) energy += kernel_.tail_share * TailMass(radius_deg) / tail_norm_;
+  double energy = kernel_.CoreShare() * CoreEnergy(radius_deg) / core_whole_.energy;
+  if (kernel_.tail_share > 0)
+    energy += kernel_.tail_share * TailMass(radius_deg) / tail_whole_.energy;
   const double ratio = radius_deg / kernel_.reach_deg;
   return energy + kernel_.pedestal_share * ratio * ratio;
 }
@@ -89,13 +147,13 @@ double RadialWeight::Density(double radius_deg) const {
   const double ratio = radius_deg / kernel_.core_radius_deg;
   double core = ratio <= 1 ? 1 : 0;
   if (kernel_.core == CoreShape::kGaussian) core = 0.5 * std::exp(-0.5 * ratio * ratio);
-  const double core_area = kernel_.core_radius_deg * kernel_.core_radius_deg * core_norm_;
+  const double core_area = kernel_.core_radius_deg * kernel_.core_radius_deg * core_whole_.energy;
   double density = kernel_.CoreShare() * core / core_area;
   if (kernel_.tail_share > 0) {
     const double scaled = radius_deg / kernel_.tail_radius_deg;
     const double base =
         kernel_.tail == TailShape::kMoffat ? 1 + scaled * scaled : std::fmax(scaled * scaled, 1.0);
-    const double tail_area = kernel_.tail_radius_deg * kernel_.tail_radius_deg * tail_norm_;
+    const double tail_area = kernel_.tail_radius_deg * kernel_.tail_radius_deg * tail_whole_.energy;
     density += kernel_.tail_share * std::pow(base, -kernel_.tail_exponent / 2) / tail_area;
   }
   density += kernel_.pedestal_share / (kernel_.reach_deg * kernel_.reach_deg);

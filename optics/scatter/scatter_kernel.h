@@ -38,6 +38,13 @@ struct ScatterKernel {
 // The core alone, sum 1.
 ScatterKernel CoreOf(const ScatterKernel& kernel);
 
+// Energy of one part of w, were it alone, within a radius, and how it answers to the part's shape.
+struct PartEnergy {
+  double energy = 0;       // 0 to 1
+  double by_radius = 0;    // derivative by the logarithm of the part's own radius
+  double by_exponent = 0;  // by the logarithm of tail_exponent; 0 for a core
+};
+
 // A valid kernel, ready for many evaluations. Relative errors below 1e-13.
 class RadialWeight {
  public:
@@ -47,15 +54,21 @@ class RadialWeight {
   double Density(double radius_deg) const;
   // Integral of w over a disk of this radius around the axis: 0 at 0, 1 at the reach and beyond.
   double EnergyWithin(double radius_deg) const;
+  PartEnergy CoreWithin(double radius_deg) const;
+  PartEnergy TailWithin(double radius_deg) const;
+  // From here on the core has all its energy, to the last digit of a double.
+  double CoreEndDeg() const;
   const ScatterKernel& kernel() const { return kernel_; }
 
  private:
   double CoreEnergy(double radius_deg) const;
   double TailMass(double radius_deg) const;  // times 1 / (pi tail_radius^2), before normalisation
+  PartEnergy CoreSlopes(double radius_deg) const;  // before normalisation, as the next
+  PartEnergy TailSlopes(double radius_deg) const;
 
   ScatterKernel kernel_;
-  double core_norm_ = 1;  // energy of the core within the reach, were it not cut there
-  double tail_norm_ = 1;  // tail mass at the reach
+  PartEnergy core_whole_;  // of the core within the reach, were it not cut there
+  PartEnergy tail_whole_;  // tail mass at the reach
 };
 
 }  // namespace eyebox::optics

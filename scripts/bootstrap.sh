@@ -14,7 +14,7 @@ build_packages=(
   libabsl-dev libaravis-dev libceres-dev libcli11-dev libeigen3-dev libfmt-dev libgpiod-dev
   libgrpc++-dev libhdf5-dev libiio-dev
   libopencv-dev # its CMake package demands every module; the four that are used are not enough
-  libpng-dev libprotobuf-dev libspdlog-dev libssl-dev libtiff-dev libxxhash-dev
+  libpng-dev libprotobuf-dev libspdlog-dev libsqlitecpp-dev libssl-dev libtiff-dev libxxhash-dev
   libusb-1.0-0-dev # asked for by libaravis-dev's pkg-config file
   prometheus-cpp-dev protobuf-compiler protobuf-compiler-grpc
 )

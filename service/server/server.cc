@@ -78,6 +78,7 @@ class GrpcServer final : public Server {
     if (endpoint.tcp) endpoint.port = port;
     address_ = endpoint.ForGrpc();
     jobs_->Start();
+    catalogue_thread_.Post([this] { PrepareCatalogue(); });
     watch_.emplace(Folders(), options_.health, [this](const auto& trouble) { Tell(trouble); });
     return absl::OkStatus();
   }
@@ -90,8 +91,10 @@ class GrpcServer final : public Server {
     watch_.reset();
     SetServing(false);
     jobs_->Stop();
+    catalogue_.Stop();
     server_->Shutdown(std::chrono::system_clock::now() + kDrainTime);
     disk_.Stop();
+    catalogue_thread_.Stop();
     server_->Wait();
     server_.reset();
   }
@@ -113,6 +116,16 @@ class GrpcServer final : public Server {
     SetServing(trouble.empty());
   }
 
+  void TellOfCatalogue(const std::string& what) {
+    log_->Write(ServerLog::Level::kWarning, "catalogue", {{"message", what}});
+  }
+
+  // So that the first client who lists recordings does not wait for all of them to be read.
+  void PrepareCatalogue() {
+    const absl::Status status = catalogue_.Refresh();
+    if (!status.ok() && !absl::IsCancelled(status)) TellOfCatalogue(std::string(status.message()));
+  }
+
   void SetServing(bool serving) {
     serving_ = serving;
     grpc::HealthCheckServiceInterface* health = server_->GetHealthCheckService();
@@ -129,10 +142,14 @@ class GrpcServer final : public Server {
   Metrics metrics_{[this] { return Now(); }};
   int metrics_port_ = 0;
   Executor disk_{kDiskThreads};
-  RunServiceImpl service_{{*jobs_, disk_, recordings_}};
-  JobServiceImpl job_service_{{*jobs_, disk_, recordings_}};
-  CaptureServiceImpl capture_service_{{*jobs_, disk_, recordings_}};
-  RecordingServiceImpl recording_service_{{*jobs_, disk_, recordings_}};
+  Catalogue catalogue_{options_.state, &recordings_, clock_,
+                       [this](const std::string& what) { TellOfCatalogue(what); }};
+  Executor catalogue_thread_{1};
+  const HandlerContext context_ = {*jobs_, disk_, recordings_, catalogue_, catalogue_thread_};
+  RunServiceImpl service_{context_};
+  JobServiceImpl job_service_{context_};
+  CaptureServiceImpl capture_service_{context_};
+  RecordingServiceImpl recording_service_{context_};
   std::unique_ptr<grpc::Server> server_;
   std::string address_;
   std::optional<HealthWatch> watch_;  // last: it tells the others

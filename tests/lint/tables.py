@@ -56,6 +56,7 @@ THIRD_PARTY = [
     Library("printing", r"iostream|print|fmt/.*|spdlog/.*", ("service/*",)),
     Library("OpenSSL", r"openssl/.*", ("service/*.cc",)),
     Library("prometheus-cpp", r"prometheus/.*", ("service/server/observe/metrics.cc",)),
+    Library("SQLiteCpp", r"SQLiteCpp/.*", ("service/server/catalogue/index_file.cc",)),
     Library("GoogleTest", r"g(test|mock)/.*", ()),
     Library("rapidcheck", r"rapidcheck.*", ()),
     Library("Google Benchmark", r"benchmark/.*", ()),

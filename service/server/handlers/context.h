@@ -2,6 +2,7 @@
 #ifndef EYEBOX_SERVICE_SERVER_HANDLERS_CONTEXT_H_
 #define EYEBOX_SERVICE_SERVER_HANDLERS_CONTEXT_H_
 
+#include "service/server/catalogue/catalogue.h"
 #include "service/server/jobs/executor.h"
 #include "service/server/jobs/jobs.h"
 #include "service/server/store/beneath.h"
@@ -13,6 +14,8 @@ struct HandlerContext {
   Jobs& jobs;
   Executor& disk;                // for what waits for the disk: never in a reactor
   const RootFolder& recordings;  // the folder that is served
+  Catalogue& catalogue;          // of its recordings
+  Executor& catalogue_thread;    // for what waits for the catalogue
 };
 
 }  // namespace eyebox::service

@@ -5,12 +5,10 @@
 #include "service/server/handlers/handlers.h"
 #include "service/server/handlers/reply.h"
 #include "service/server/store/names.h"
+#include "service/server/store/paging.h"
 
 namespace eyebox::service {
 namespace {
-
-constexpr int kDefaultPageSize = 20;
-constexpr int kMaxPageSize = 100;
 
 // The token is the number of the last job of the page before: jobs created meanwhile shift nothing.
 absl::StatusOr<int64_t> BeforeOf(const std::string& token) {
@@ -24,11 +22,7 @@ absl::StatusOr<int64_t> BeforeOf(const std::string& token) {
 }
 
 absl::StatusOr<v1::ListJobsResponse> List(JobTable& table, const v1::ListJobsRequest& request) {
-  const int asked = request.page_size() == 0 ? kDefaultPageSize : request.page_size();
-  if (asked < 1 || asked > kMaxPageSize) {
-    return BadField("page_size", "is " + std::to_string(asked),
-                    "give 1 to " + std::to_string(kMaxPageSize) + ", or 0 for the default");
-  }
+  EYEBOX_ASSIGN_OR_RETURN(const int asked, PageSizeOf(request.page_size()));
   EYEBOX_ASSIGN_OR_RETURN(const int64_t before, BeforeOf(request.page_token()));
   std::vector<v1::Job> page = table.Page(before, asked + 1);
   v1::ListJobsResponse response;

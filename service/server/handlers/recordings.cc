@@ -1,32 +1,22 @@
 // The calls that say what lies below the served folder.
 #include <algorithm>
-#include <filesystem>
 #include <iterator>
-#include <memory>
 #include <utility>
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_replace.h"
 #include "capture/base/status.h"
 #include "capture/recording/convert.h"
 #include "capture/recording/reader.h"
+#include "service/server/catalogue/describe.h"
 #include "service/server/handlers/handlers.h"
 #include "service/server/handlers/reply.h"
+#include "service/server/store/paging.h"
 #include "service/server/store/rigs.h"
 #include "service/server/store/served.h"
 
 namespace eyebox::service {
 namespace {
-
-constexpr int kDefaultPageSize = 20;
-constexpr int kMaxPageSize = 100;
-
-absl::StatusOr<int> PageSize(int asked) {
-  if (asked == 0) return kDefaultPageSize;
-  if (asked >= 1 && asked <= kMaxPageSize) return asked;
-  return BadField("page_size", absl::StrCat("is ", asked), "give 1 to 100, or 0 for the default");
-}
 
 struct Page {
   std::vector<std::string> names;
@@ -36,7 +26,7 @@ struct Page {
 // The token is the last name of the page before: what appears meanwhile shifts nothing.
 absl::StatusOr<Page> PageOf(const std::vector<std::string>& names, int page_size,
                             const std::string& token) {
-  EYEBOX_ASSIGN_OR_RETURN(const int size, PageSize(page_size));
+  EYEBOX_ASSIGN_OR_RETURN(const int size, PageSizeOf(page_size));
   const auto first = std::ranges::upper_bound(names, token);
   const auto count = std::min<ptrdiff_t>(size, names.end() - first);
   Page page;
@@ -54,43 +44,6 @@ v1::RigEntry DescribeRig(const RootFolder& data, const std::string& name) {
   } else {
     entry.set_problem(std::string(config.status().message()));
   }
-  return entry;
-}
-
-struct OpenRecording {
-  OwnedFd folder;
-  std::unique_ptr<capture::RecordingReader> reader;
-};
-
-absl::StatusOr<OpenRecording> OpenNamed(const RootFolder& data, const std::string& field,
-                                        const std::string& name) {
-  EYEBOX_ASSIGN_OR_RETURN(const std::string path, CheckName(kRecordingNameRule, field, name));
-  auto folder = data.OpenFolder(path);
-  if (!folder.ok()) return WithField(folder.status(), field);
-  auto reader = capture::RecordingReader::Open(folder->Path());
-  if (!reader.ok()) {
-    return absl::Status(
-        reader.status().code(),
-        absl::StrReplaceAll(reader.status().message(), {{folder->Path().string(), name}}));
-  }
-  return OpenRecording{*std::move(folder), *std::move(reader)};
-}
-
-v1::RecordingEntry DescribeRecording(const std::string& name,
-                                     const absl::StatusOr<OpenRecording>& recording) {
-  v1::RecordingEntry entry;
-  entry.set_name(name);
-  if (!recording.ok()) {
-    entry.set_problem(std::string(recording.status().message()));
-    return entry;
-  }
-  *entry.mutable_header() = capture::ToProto(recording->reader->Header());
-  entry.mutable_header()->clear_plan();
-  const auto captures = recording->reader->Captures();
-  int64_t frames = 0;
-  for (const capture::CaptureEntry& one : captures) frames += one.frame_count;
-  entry.set_captures(static_cast<int>(captures.size()));
-  entry.set_frames(frames);
   return entry;
 }
 
@@ -113,27 +66,14 @@ absl::StatusOr<v1::RigEntry> Rig(const RootFolder& data, const std::string& name
   return entry;
 }
 
-absl::StatusOr<v1::ListRecordingsResponse> Recordings(const RootFolder& data,
-                                                      const v1::ListRecordingsRequest& request) {
-  EYEBOX_ASSIGN_OR_RETURN(const Served served, ListServed(data));
-  EYEBOX_ASSIGN_OR_RETURN(const Page page,
-                          PageOf(served.recordings, request.page_size(), request.page_token()));
-  v1::ListRecordingsResponse response;
-  for (const std::string& name : page.names) {
-    *response.add_recordings() = DescribeRecording(name, OpenNamed(data, "name", name));
-  }
-  response.set_next_page_token(page.next_token);
-  return response;
-}
-
 absl::StatusOr<v1::RecordingEntry> Recording(const RootFolder& data, const std::string& name) {
-  EYEBOX_ASSIGN_OR_RETURN(OpenRecording recording, OpenNamed(data, "name", name));
-  return DescribeRecording(name, std::move(recording));
+  EYEBOX_ASSIGN_OR_RETURN(const OpenRecording recording, OpenNamed(data, "name", name));
+  return Describe(name, recording);
 }
 
 absl::StatusOr<v1::ListCapturesResponse> Captures(const RootFolder& data,
                                                   const v1::ListCapturesRequest& request) {
-  EYEBOX_ASSIGN_OR_RETURN(const int size, PageSize(request.page_size()));
+  EYEBOX_ASSIGN_OR_RETURN(const int size, PageSizeOf(request.page_size()));
   int after = 0;
   if (!request.page_token().empty() &&
       (!absl::SimpleAtoi(request.page_token(), &after) || after < 1)) {
@@ -160,12 +100,12 @@ absl::StatusOr<v1::ListCapturesResponse> Captures(const RootFolder& data,
   return response;
 }
 
-// Answers from a disk thread.
+// Answers from a thread of `executor`.
 template <typename Answer, typename Message>
-grpc::ServerUnaryReactor* FromDisk(const HandlerContext& context, grpc::CallbackServerContext* call,
-                                   Answer answer, Message* response) {
+grpc::ServerUnaryReactor* From(Executor& executor, grpc::CallbackServerContext* call, Answer answer,
+                               Message* response) {
   grpc::ServerUnaryReactor* reactor = call->DefaultReactor();
-  context.disk.Post([reactor, answer, response] { Reply(reactor, answer(), response); });
+  executor.Post([reactor, answer, response] { Reply(reactor, answer(), response); });
   return reactor;
 }
 
@@ -174,37 +114,39 @@ grpc::ServerUnaryReactor* FromDisk(const HandlerContext& context, grpc::Callback
 grpc::ServerUnaryReactor* ListRigs(const HandlerContext& context, grpc::CallbackServerContext* call,
                                    const v1::ListRigsRequest* request,
                                    v1::ListRigsResponse* response) {
-  return FromDisk(
-      context, call, [&context, request] { return Rigs(context.recordings, *request); }, response);
+  return From(
+      context.disk, call, [&context, request] { return Rigs(context.recordings, *request); },
+      response);
 }
 grpc::ServerUnaryReactor* GetRig(const HandlerContext& context, grpc::CallbackServerContext* call,
                                  const v1::GetRigRequest* request, v1::RigEntry* response) {
-  return FromDisk(
-      context, call, [&context, request] { return Rig(context.recordings, request->name()); },
+  return From(
+      context.disk, call, [&context, request] { return Rig(context.recordings, request->name()); },
       response);
 }
 grpc::ServerUnaryReactor* ListRecordings(const HandlerContext& context,
                                          grpc::CallbackServerContext* call,
                                          const v1::ListRecordingsRequest* request,
                                          v1::ListRecordingsResponse* response) {
-  return FromDisk(
-      context, call, [&context, request] { return Recordings(context.recordings, *request); },
-      response);
+  // It may have to read many recordings first, which must not hold up other calls.
+  return From(
+      context.catalogue_thread, call,
+      [&context, request] { return context.catalogue.List(*request); }, response);
 }
 grpc::ServerUnaryReactor* GetRecording(const HandlerContext& context,
                                        grpc::CallbackServerContext* call,
                                        const v1::GetRecordingRequest* request,
                                        v1::RecordingEntry* response) {
-  return FromDisk(
-      context, call, [&context, request] { return Recording(context.recordings, request->name()); },
-      response);
+  return From(
+      context.disk, call,
+      [&context, request] { return Recording(context.recordings, request->name()); }, response);
 }
 grpc::ServerUnaryReactor* ListCaptures(const HandlerContext& context,
                                        grpc::CallbackServerContext* call,
                                        const v1::ListCapturesRequest* request,
                                        v1::ListCapturesResponse* response) {
-  return FromDisk(
-      context, call, [&context, request] { return Captures(context.recordings, *request); },
+  return From(
+      context.disk, call, [&context, request] { return Captures(context.recordings, *request); },
       response);
 }
 

@@ -51,6 +51,7 @@ void AddScatter(CLI::App& app, Work& work);
 void AddSimulate(CLI::App& app, Work& work);
 void AddReduce(CLI::App& app, Work& work);
 void AddUniformity(CLI::App& app, Work& work);
+void AddCatalogue(CLI::App& app, Work& work);
 void AddCharacterize(CLI::App& app, Work& work);
 void AddGeometry(CLI::App& app, Work& work);
 void AddPhotometry(CLI::App& app, Work& work);

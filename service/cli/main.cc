@@ -36,6 +36,7 @@ void AddAllCommands(CLI::App& app, Work& work) {
   AddTradeoff(app, work);
   AddVerify(app, work);
   AddVerifyFiles(app, work);
+  AddCatalogue(app, work);
   AddRecover(app, work);
   AddPack(app, work);
   AddExport(app, work);

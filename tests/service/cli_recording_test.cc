@@ -6,6 +6,7 @@
 #include <fstream>
 #include <string>
 
+#include "eyebox/v1/recording_service.pb.h"
 #include "eyebox/v1/results.pb.h"
 #include "tests/service/run_eyebox.h"
 
@@ -54,6 +55,31 @@ TEST(CliRecording, RecoverMendsATornManifestAndSaysSo) {
   EXPECT_THAT(recovered.out, HasSubstr("Every frame of"));
   EXPECT_EQ(RunEyebox("verify-files " + recording.string()).exit_code, 0);
   EXPECT_EQ(RunEyebox("recover " + folder.path().string()).exit_code, 3);
+}
+
+TEST(CliRecording, CatalogueListsFiltersAndIsMadeAnew) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "data/lab");
+  for (const char* name : {"data/a", "data/lab/b"}) {
+    std::filesystem::copy(kFixture, folder / name, std::filesystem::copy_options::recursive);
+  }
+  std::filesystem::remove(folder / "data/a/captures/000001.h5");
+  const std::string catalogue =
+      "catalogue --store " + (folder / "data").string() + " --state " + (folder / "state").string();
+  const Outcome all = RunEyebox(catalogue);
+  EXPECT_EQ(all.exit_code, 0);
+  EXPECT_THAT(all.out, HasSubstr("recordings/a"));
+  EXPECT_THAT(all.out, HasSubstr("000001.h5: is missing"));
+  EXPECT_THAT(all.err, HasSubstr("made anew from 2 recordings"));
+  const Outcome whole = RunEyebox(catalogue + " --filter 'state = COMPLETE' --json");
+  const auto listed = ParsedFrom<v1::ListRecordingsResponse>(whole);
+  ASSERT_EQ(listed.recordings_size(), 1);
+  EXPECT_EQ(listed.recordings(0).name(), "recordings/lab/b");
+  EXPECT_EQ(whole.err, "");
+  EXPECT_THAT(RunEyebox(catalogue + " --rebuild").err, HasSubstr("as was asked for"));
+  const Outcome wrong = RunEyebox(catalogue + " --filter 'state = GREEN'");
+  EXPECT_EQ(wrong.exit_code, 3);
+  EXPECT_THAT(wrong.err, HasSubstr("at character 9, 'GREEN' is unknown"));
 }
 
 }  // namespace

@@ -19,7 +19,8 @@ from eyebox.capture import Captured, Session, Stimulus  # noqa: E402
 from eyebox.client import Client, Job, Update, connect  # noqa: E402  needs the stubs
 from eyebox.errors import (AlreadyExists, Cancelled, DataLoss, EyeboxError, InvalidRequest,  # noqa: E402
                            JobFailed, NotFound, QueueFull, Rejected, ServerUnavailable)
+from eyebox.recordings import Recording  # noqa: E402
 
 __all__ = ["AlreadyExists", "Cancelled", "Captured", "Client", "DataLoss", "EyeboxError",
-           "InvalidRequest", "Job", "JobFailed", "Map", "NotFound", "QueueFull", "Rejected",
-           "ServerUnavailable", "Session", "Stimulus", "Update", "connect"]
+           "InvalidRequest", "Job", "JobFailed", "Map", "NotFound", "QueueFull", "Recording",
+           "Rejected", "ServerUnavailable", "Session", "Stimulus", "Update", "connect"]

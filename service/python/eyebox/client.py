@@ -16,10 +16,10 @@ from typing import Any, Iterator, Optional, Union
 import grpc
 from google.protobuf import json_format
 
-from eyebox import arrays, capture, errors
+from eyebox import arrays, capture, errors, recordings
 from eyebox.v1 import (capture_pb2, capture_service_pb2, capture_service_pb2_grpc, job_service_pb2,
-                       job_service_pb2_grpc, recording_pb2, results_pb2, service_pb2,
-                       service_pb2_grpc)
+                       job_service_pb2_grpc, recording_pb2, recording_service_pb2_grpc, results_pb2,
+                       service_pb2, service_pb2_grpc)
 
 _CALL_S = 30.0  # for a call that answers at once
 _STREAM_S = 60.0  # for one stretch of a watch; the next goes on where it ended
@@ -208,6 +208,7 @@ class Client:
         self._stub = service_pb2_grpc.RunServiceStub(channel)
         self._stubs = {name: getattr(stub, name) for stub in (
             self._stub, job_service_pb2_grpc.JobServiceStub(channel),
+            recording_service_pb2_grpc.RecordingServiceStub(channel),
             capture_service_pb2_grpc.CaptureServiceStub(channel)) for name in vars(stub)}
 
     def run(self, recording: Optional[str] = None, rig: Optional[str] = None, *, seed: int = 1,
@@ -295,6 +296,16 @@ class Client:
             token = page.next_page_token
             if not token:
                 return
+
+    def recordings(self, filter: str = "", *, order_by: str = "",
+                   page_size: int = 0) -> Iterator[recordings.Recording]:
+        """Recordings below the server's data folder, by name. `filter` joins conditions by AND:
+        'rig = "left-eye" AND state = COMPLETE AND start_time >= "2026-11-01"'; fields are name,
+        rig, camera, state, origin, start_time, captures, frames, bytes, levels, and series and
+        results with ':'. `order_by` is "name" or "start_time", with " desc" backwards. Pages of
+        `page_size` (at most 100; 0: the server's default) are asked for as they are needed.
+        Raises InvalidRequest, which says where in the filter."""
+        return recordings.pages(self._call, filter, order_by, page_size)
 
     def close(self) -> None:
         self._channel.close()

@@ -5,12 +5,15 @@
 
 import filecmp
 import os
+import re
+import shutil
 import signal
 import stat
 import subprocess
 import sys
 import tempfile
 import unittest
+from datetime import datetime, timedelta, timezone
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[3] / "service" / "python"
@@ -148,6 +151,31 @@ class PythonClientTest(unittest.TestCase):
         wanted = json_format.Parse((self.expected / "result.json").read_text(),
                                    results_pb2.RunResult())
         self.assertEqual(self.client.run(recording="rec", request_id="r").result(), wanted)
+
+    def test_recordings_are_listed_filtered_and_paged(self):
+        rec = [one for one in self.client.recordings() if one.name == "rec"][0]
+        self.assertEqual((rec.state, rec.rig, rec.origin), ("COMPLETE", "rift-s-like", "SIMULATED"))
+        self.assertEqual(rec.series, ("",))
+        self.assertGreater(rec.frames, rec.captures)
+        header = (self.folder / "data/rec/recording.textproto").read_text()
+        start_ns = int(re.search(r"created_real_ns: (\d+)", header)[1])
+        self.assertEqual(rec.start, datetime.fromtimestamp(0, timezone.utc)
+                         + timedelta(microseconds=start_ns // 1000))
+        for number in range(3):
+            shutil.copytree(self.folder / "data/rec", self.folder / f"data/listed/{number}")
+        (self.folder / "data/listed/1/captures/000001.h5").unlink()
+        listed = 'name = "recordings/listed/*"'
+        whole = [one.name for one in self.client.recordings(listed + " AND state = COMPLETE",
+                                                            order_by="name desc", page_size=1)]
+        self.assertEqual(whole, ["listed/2", "listed/0"])
+        (damaged,) = self.client.recordings(listed + " AND state = DAMAGED")
+        self.assertIn("000001.h5", damaged.problem)
+        self.assertIsNone(damaged.start)
+        with self.assertRaises(eyebox.InvalidRequest) as caught:
+            next(self.client.recordings("state = COMPLETE OR rig = a"))
+        self.assertEqual(caught.exception.where, "filter")
+        self.assertIn("character 18", str(caught.exception))
+        shutil.rmtree(self.folder / "data/listed")
 
     def test_errors_carry_the_field_and_the_advice(self):
         with self.assertRaises(eyebox.InvalidRequest) as caught:

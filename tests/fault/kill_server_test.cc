@@ -18,8 +18,7 @@
 
 #include "capture/base/file.h"
 #include "capture/recording/reader.h"
-#include "eyebox/v1/capture_service.grpc.pb.h"
-#include "eyebox/v1/job_service.grpc.pb.h"
+#include "tests/fault/persistent_client.h"
 #include "tests/fault/served_eyebox.h"
 #include "tests/support/temporary_folder.h"
 
@@ -37,106 +36,11 @@ int KillCount() {
   return asked ? std::atoi(asked) : 4;
 }
 
-// Calls until the server is there to answer.
-template <typename Call>
-grpc::Status Persist(const Call& call) {
-  const auto give_up = steady_clock::now() + std::chrono::seconds(120);
-  while (true) {
-    grpc::ClientContext context;
-    context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(60));
-    const grpc::Status status = call(&context);
-    if (status.error_code() != grpc::StatusCode::UNAVAILABLE || steady_clock::now() > give_up) {
-      return status;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-}
-
 // Of a job that has ended: by name, the bytes of its artifacts.
 using Files = std::map<std::string, std::string>;
 // Of a recording: the pixels of every frame of its whole captures. One that a kill cut short stays
 // beside the one that was taken in its place.
 using Pixels = std::vector<std::vector<uint16_t>>;
-
-class Client {
- public:
-  explicit Client(const std::shared_ptr<grpc::Channel>& channel)
-      : runs_(v1::RunService::NewStub(channel)),
-        jobs_(v1::JobService::NewStub(channel)),
-        captures_(v1::CaptureService::NewStub(channel)) {}
-
-  std::string CreateRun(const std::string& id) {
-    v1::CreateRunRequest request;
-    request.set_request_id(id);
-    request.mutable_rig()->set_name("rig");
-    request.mutable_rig()->set_camera_uri("sim:rift-s-like");
-    request.mutable_rig()->set_seed(3);
-    v1::Job job;
-    Expect(Persist([&](auto* context) { return runs_->CreateRun(context, request, &job); }));
-    return job.name();
-  }
-
-  std::string CreateSession(const std::string& recording, const v1::CapturePlan& plan) {
-    v1::CreateJobRequest request;
-    request.set_request_id(recording);
-    request.mutable_capture()->set_recording_id(recording);
-    request.mutable_capture()->set_rig("rigs/left");
-    request.mutable_capture()->set_session(true);
-    *request.mutable_capture()->mutable_plan() = plan;
-    v1::Job job;
-    Expect(Persist([&](auto* context) { return jobs_->CreateJob(context, request, &job); }));
-    return job.name();
-  }
-
-  v1::CapturePlan Plan() {
-    v1::MakePlanRequest request;
-    request.set_levels(24);
-    request.add_exposures_s(0.0125);
-    request.set_repeats(2);
-    request.set_dark_repeats(2);
-    request.set_flat_repeats(2);
-    v1::CapturePlan plan;
-    Expect(Persist([&](auto* context) { return captures_->MakePlan(context, request, &plan); }));
-    return plan;
-  }
-
-  v1::CaptureReply Capture(const std::string& job, int number, const v1::CaptureSpec& spec) {
-    v1::CaptureRequest request;
-    request.set_name(job);
-    request.set_number(number);
-    *request.mutable_capture() = spec;
-    v1::CaptureReply reply;
-    Expect(Persist([&](auto* context) { return captures_->Capture(context, request, &reply); }));
-    return reply;
-  }
-
-  void Finish(const std::string& name) {
-    v1::FinishCaptureRequest request;
-    request.set_name(name);
-    v1::Job job;
-    Expect(
-        Persist([&](auto* context) { return captures_->FinishCapture(context, request, &job); }));
-  }
-
-  v1::Job Wait(const std::string& name) {
-    v1::WaitJobRequest request;
-    request.set_name(name);
-    request.set_timeout_s(50);
-    v1::Job job;
-    Expect(Persist([&](auto* context) { return runs_->WaitJob(context, request, &job); }));
-    EXPECT_EQ(job.state(), v1::JOB_STATE_SUCCEEDED) << job.DebugString();
-    return job;
-  }
-
- private:
-  static void Expect(const grpc::Status& status) {
-    EXPECT_TRUE(status.ok()) << status.error_code() << ": " << status.error_message();
-  }
-
-  std::unique_ptr<v1::RunService::Stub> runs_;
-  std::unique_ptr<v1::JobService::Stub> jobs_;
-  std::unique_ptr<v1::CaptureService::Stub> captures_;
-};
 
 class KillServer : public testing::Test {
  protected:
@@ -185,7 +89,7 @@ class KillServer : public testing::Test {
   // A run and a session beside it until both have ended, killed `kills` times meanwhile. Repeats
   // what was acknowledged: an answer that has changed would be a capture that was lost.
   void Round(const std::string& id, int kills) {
-    Client client(server_->Connect());
+    PersistentClient client(server_->Connect());
     const v1::CapturePlan plan = client.Plan();
     const std::string run = client.CreateRun("run-" + id);
     const std::string session = client.CreateSession("session-" + id, plan);

@@ -2,9 +2,13 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "capture/base/parallel.h"
 #include "capture/base/status.h"
 #include "optics/uniformity/normal_equations.h"
 
@@ -67,20 +71,92 @@ Eigen::VectorXd Dense(const Nonzero& at, size_t size) {
   return basis;
 }
 
-template <typename Pixel>
-Image<float> MapOf(const SmoothField& field, Pixel pixel) {
-  const FieldBasis basis = BasisOf(field);
-  Image<float> map(field.size);
+std::vector<SideValues> Columns(const FieldBasis& basis, int width_px) {
   std::vector<SideValues> columns;
-  for (int x = 0; x < field.size.width_px; ++x) columns.push_back(basis.AlongX(x));
-  for (int y = 0; y < field.size.height_px; ++y) {
-    const SideValues along_y = basis.AlongY(y);
-    const auto row = map.row(y);
-    for (size_t x = 0; x < row.size(); ++x) {
-      row[x] = static_cast<float>(pixel(TermsAt(basis, columns[x], along_y)));
+  for (int x = 0; x < width_px; ++x) columns.push_back(basis.AlongX(x));
+  return columns;
+}
+
+constexpr size_t kMost = kMostFunctions;
+
+// The field along one row is a sum over the functions in x alone, and so is its variance over pairs
+// of them: what each row costs besides a few products a pixel.
+class RowOfField {
+ public:
+  RowOfField(const SmoothField& field, const FieldBasis& basis, int y)
+      : field_(field), basis_(basis), along_y_(basis.AlongY(y)) {}
+
+  std::array<double, kMost> Coefficients() const {
+    std::array<double, kMost> by_x{};
+    ForTerms(
+        [&](size_t term, int a, double value) { by_x[a] += field_.coefficients[term] * value; });
+    return by_x;
+  }
+
+  // [a][b], symmetric.
+  std::array<std::array<double, kMost>, kMost> Covariance() const {
+    std::array<std::array<double, kMost>, kMost> by_x{};
+    const size_t n = field_.coefficients.size();
+    ForTerms([&](size_t one, int a, double value) {
+      ForTerms([&](size_t other, int b, double other_value) {
+        by_x[a][b] += field_.covariance[one * n + other] * value * other_value;
+      });
+    });
+    return by_x;
+  }
+
+ private:
+  // The terms that are not 0 in this row: term, its function in x, value of its function in y.
+  template <typename Visit>
+  void ForTerms(const Visit& visit) const {
+    const auto& terms = basis_.Terms();
+    for (size_t i = 0; i < terms.size(); ++i) {
+      const int b = terms[i][1] - along_y_.first;
+      if (b >= 0 && b < along_y_.count) visit(i, terms[i][0], along_y_.value[b]);
     }
   }
+
+  const SmoothField& field_;
+  const FieldBasis& basis_;
+  SideValues along_y_;
+};
+
+// Rows on all processors; `row(of_field, columns, pixels)` fills one.
+template <typename FillRow>
+Image<float> MapOf(const SmoothField& field, const FillRow& row) {
+  const FieldBasis basis = BasisOf(field);
+  Image<float> map = Image<float>::Unwritten(field.size);
+  const std::vector<SideValues> columns = Columns(basis, field.size.width_px);
+  ForEachInParallel(field.size.height_px,
+                    [&](int y) { row(RowOfField(field, basis, y), columns, map.row(y)); });
   return map;
+}
+
+void FillValues(const RowOfField& row, const std::vector<SideValues>& columns,
+                std::span<float> pixels) {
+  const auto by_x = row.Coefficients();
+  for (size_t x = 0; x < pixels.size(); ++x) {
+    const SideValues& at = columns[x];
+    double value = 0;
+    for (int a = 0; a < at.count; ++a) value += by_x[at.first + a] * at.value[a];
+    pixels[x] = static_cast<float>(value);
+  }
+}
+
+void FillSigmas(const RowOfField& row, const std::vector<SideValues>& columns,
+                std::span<float> pixels) {
+  const auto by_x = row.Covariance();
+  for (size_t x = 0; x < pixels.size(); ++x) {
+    const SideValues& at = columns[x];
+    double variance = 0;
+    for (int a = 0; a < at.count; ++a) {
+      const double* const with = by_x[at.first + a].data() + at.first;
+      double others = 0.5 * with[a] * at.value[a];
+      for (int b = 0; b < a; ++b) others += with[b] * at.value[b];
+      variance += 2 * others * at.value[a];
+    }
+    pixels[x] = static_cast<float>(std::sqrt(std::max(variance, 0.0)));
+  }
 }
 
 absl::Status CheckOrder(FieldModel model, int order) {
@@ -104,14 +180,9 @@ double SmoothField::SigmaAt(double x_px, double y_px) const {
   return SigmaOf(Covariance(*this), TermsAt(basis, basis.AlongX(x_px), basis.AlongY(y_px)));
 }
 
-Image<float> SmoothField::Values() const {
-  return MapOf(*this, [this](const Nonzero& at) { return ValueOf(*this, at); });
-}
+Image<float> SmoothField::Values() const { return MapOf(*this, FillValues); }
 
-Image<float> SmoothField::Sigmas() const {
-  const auto matrix = Covariance(*this);
-  return MapOf(*this, [&matrix](const Nonzero& at) { return SigmaOf(matrix, at); });
-}
+Image<float> SmoothField::Sigmas() const { return MapOf(*this, FillSigmas); }
 
 absl::StatusOr<SmoothField> FitSmoothField(const MeasuredImage& image, FieldModel model,
                                            int order) {

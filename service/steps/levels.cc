@@ -1,12 +1,14 @@
 #include "service/steps/levels.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <set>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "capture/base/parallel.h"
 #include "capture/base/status.h"
 #include "optics/reduce/clip_stack.h"
 #include "optics/reduce/flat_variance.h"
@@ -69,7 +71,12 @@ void AddToStack(const optics::ReducedLevel& level, double drive,
   const auto values = image.value.pixels();
   levels.size = image.size();
   levels.drives.push_back(drive);
-  levels.luminance.insert(levels.luminance.end(), values.begin(), values.end());
+  const size_t held = levels.luminance.size();
+  levels.luminance.resize(held + values.size());
+  ForEachPieceInParallel(values.size(), [&](size_t first, size_t end) {
+    std::copy(values.begin() + first, values.begin() + end,
+              levels.luminance.begin() + static_cast<std::ptrdiff_t>(held + first));
+  });
   levels.valid.resize(values.size(), 1);
   for (size_t i = 0; i < values.size(); ++i) {
     if (image.mask.pixels()[i] != 0) levels.valid[i] = 0;
@@ -152,6 +159,9 @@ absl::StatusOr<MeasuredLevels> ReduceGreyLevels(capture::RecordingReader& record
     readings.push_back(ReadReferenceDisk(reduced->luminance, calibration, drive));
     readings.back().relative_sigma = drift_sigma;
     levels.shares.push_back({reduced->report.budget, drift_sigma});
+    if (levels.drives.empty()) {  // the least that will do: growing would copy the stack
+      levels.luminance.reserve((groups.size() - i) * reduced->luminance.image.size().PixelCount());
+    }
     AddToStack(*reduced, drive, calibration, levels);
     levels.reference = {drive, *std::move(reduced), figures};
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "capture/base/large_memory.h"
 #include "capture/recording/reader.h"
 #include "fit/activation/level_series.h"
 #include "fit/budget/budget_terms.h"
@@ -34,9 +35,9 @@ struct MeasuredLevels {
   std::vector<fit::ReadingShares> shares;  // of the variance of each of its readings
   GreyLevel reference;                     // the brightest level: g is measured there
   ImageSize size;
-  std::vector<double> drives;    // [levels], ascending
-  std::vector<float> luminance;  // [levels, height * width]; NaN where a pixel has no value
-  std::vector<uint8_t> valid;    // [height * width], 1 where every level has a value
+  std::vector<double> drives;               // [levels], ascending
+  UninitialisedVector<float> luminance;     // [levels, height * width]; NaN where there is no value
+  std::vector<uint8_t> valid;               // [height * width], 1 where every level has a value
   std::vector<optics::LevelBlocks> blocks;  // for the test whether g is the same at all levels
   std::vector<std::string> warnings;        // levels that were left out, and why
 

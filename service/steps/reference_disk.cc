@@ -51,8 +51,13 @@ std::vector<size_t> ReferenceDiskPixels(ImageSize size) {
   const double radius =
       std::max(options.reference_radius_fraction * std::min(size.width_px, size.height_px), 1.0);
   std::vector<size_t> pixels;
-  for (int y = 0; y < size.height_px; ++y) {
-    for (int x = 0; x < size.width_px; ++x) {
+  const auto last = [&](double centre, int extent) {
+    return std::min(static_cast<int>(centre + radius), extent - 1);
+  };
+  for (int y = static_cast<int>(std::max(centre_y - radius, 0.0));
+       y <= last(centre_y, size.height_px); ++y) {
+    for (int x = static_cast<int>(std::max(centre_x - radius, 0.0));
+         x <= last(centre_x, size.width_px); ++x) {
       if (std::hypot(x - centre_x, y - centre_y) > radius) continue;
       pixels.push_back(static_cast<size_t>(y) * size.width_px + x);
     }

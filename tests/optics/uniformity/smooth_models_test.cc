@@ -53,6 +53,25 @@ TEST(SmoothModels, ASplineHoldsEveryBicubicExactly) {
   EXPECT_NEAR(values.at(40, 17), spline->At(40, 17), 1e-6);
 }
 
+TEST(SmoothModels, MapsAreWhatSinglePlacesGive) {
+  const MeasuredImage image = Field(Bump, 0.02, 3);
+  for (const auto& [model, order] : {std::pair{FieldModel::kPolynomial, 0},
+                                     {FieldModel::kPolynomial, kLargestOrder},
+                                     {FieldModel::kSpline, 1},
+                                     {FieldModel::kSpline, 7}}) {
+    const auto field = FitSmoothField(image, model, order);
+    ASSERT_TRUE(field.ok()) << field.status();
+    const Image<float> values = field->Values();
+    const Image<float> sigmas = field->Sigmas();
+    for (int y = 0; y < kSize.height_px; y += 5) {
+      for (int x = 0; x < kSize.width_px; x += 7) {
+        EXPECT_NEAR(values.at(x, y), field->At(x, y), 1e-6);
+        EXPECT_NEAR(sigmas.at(x, y) / field->SigmaAt(x, y), 1, 1e-6);
+      }
+    }
+  }
+}
+
 TEST(SmoothModels, PullsOfASplineHaveUnitVariance) {
   double squares = 0;
   int count = 0;

@@ -76,11 +76,6 @@ auto Guarded(const fs::path& file, Do run) -> decltype(run()) {
   }
 }
 
-void Settle(SQLite::Database& database) {
-  // What stands in the file is not trusted, and the last commits may be lost with the power.
-  database.exec("PRAGMA trusted_schema=OFF; PRAGMA cell_size_check=ON; PRAGMA synchronous=NORMAL");
-}
-
 template <typename Names>
 std::string Fenced(const Names& names) {
   std::string all;
@@ -137,8 +132,17 @@ void BindRow(const IndexRow& row, SQLite::Statement& statement) {
 
 }  // namespace
 
-IndexFile::IndexFile(fs::path file, std::unique_ptr<SQLite::Database> database)
-    : file_(std::move(file)), database_(std::move(database)) {}
+struct IndexFile::Connection {
+  Connection(const fs::path& file, int flags) : database(file.string(), flags, kBusyTimeoutMs) {
+    // What stands in the file is not trusted, and the last commits may be lost with the power.
+    database.exec(
+        "PRAGMA trusted_schema=OFF; PRAGMA cell_size_check=ON; PRAGMA synchronous=NORMAL");
+  }
+  SQLite::Database database;
+};
+
+IndexFile::IndexFile(fs::path file, std::unique_ptr<Connection> connection)
+    : file_(std::move(file)), connection_(std::move(connection)) {}
 IndexFile::IndexFile(IndexFile&&) noexcept = default;
 IndexFile& IndexFile::operator=(IndexFile&&) noexcept = default;
 IndexFile::~IndexFile() = default;
@@ -155,43 +159,43 @@ absl::StatusOr<IndexFile> IndexFile::Open(const fs::path& file) {
                     "move it out of the state folder");
   }
   return Guarded(file, [&]() -> absl::StatusOr<IndexFile> {
-    auto database =
-        std::make_unique<SQLite::Database>(file.string(), SQLite::OPEN_READWRITE, kBusyTimeoutMs);
-    Settle(*database);
-    const int version = database->execAndGet("PRAGMA user_version").getInt();
+    auto connection = std::make_unique<Connection>(file, SQLite::OPEN_READWRITE);
+    SQLite::Database& database = connection->database;
+    const int version = database.execAndGet("PRAGMA user_version").getInt();
     if (version != kSchemaVersion) {
       return Useless(file, absl::StrCat("is of version ", version, " instead of ", kSchemaVersion));
     }
-    SQLite::Statement schema(*database, "SELECT sql FROM sqlite_schema");
+    SQLite::Statement schema(database, "SELECT sql FROM sqlite_schema");
     if (!schema.executeStep() || schema.getColumn(0).getString() != kSchema ||
         schema.executeStep()) {
       return Useless(file, "has other tables than this version makes");
     }
-    return IndexFile(file, std::move(database));
+    return IndexFile(file, std::move(connection));
   });
 }
 
 absl::StatusOr<IndexFile> IndexFile::Create(const fs::path& file) {
   return Guarded(file, [&]() -> absl::StatusOr<IndexFile> {
-    auto database = std::make_unique<SQLite::Database>(
-        file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kBusyTimeoutMs);
-    Settle(*database);
-    const std::string mode = database->execAndGet("PRAGMA journal_mode=WAL").getString();
+    auto connection =
+        std::make_unique<Connection>(file, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+    SQLite::Database& database = connection->database;
+    const std::string mode = database.execAndGet("PRAGMA journal_mode=WAL").getString();
     if (mode != "wal") {
       return absl::UnimplementedError(Complaint(
           file.string(), "cannot be kept in WAL mode: its file system has no shared memory",
           "keep the state folder on a local disk"));
     }
-    database->exec(kSchema);
-    database->exec(absl::StrCat("PRAGMA user_version=", kSchemaVersion));
-    return IndexFile(file, std::move(database));
+    database.exec(kSchema);
+    database.exec(absl::StrCat("PRAGMA user_version=", kSchemaVersion));
+    return IndexFile(file, std::move(connection));
   });
 }
 
 absl::StatusOr<std::map<std::string, std::string>> IndexFile::Stamps() const {
   return Guarded(file_, [&]() -> absl::StatusOr<std::map<std::string, std::string>> {
     std::map<std::string, std::string> stamps;
-    SQLite::Statement rows(*database_, absl::StrCat("SELECT ", kColumns, " FROM recordings"));
+    SQLite::Statement rows(connection_->database,
+                           absl::StrCat("SELECT ", kColumns, " FROM recordings"));
     while (rows.executeStep()) {
       EYEBOX_RETURN_IF_ERROR(CheckRow(file_, rows));
       const std::string name = rows.getColumn(kNameColumn).getString();
@@ -207,16 +211,17 @@ absl::StatusOr<std::map<std::string, std::string>> IndexFile::Stamps() const {
 
 absl::Status IndexFile::Apply(const IndexChanges& changes) {
   return Guarded(file_, [&]() -> absl::Status {
-    SQLite::Transaction transaction(*database_, SQLite::TransactionBehavior::IMMEDIATE);
-    SQLite::Statement remove(*database_, "DELETE FROM recordings WHERE name = ?1");
+    SQLite::Transaction transaction(connection_->database, SQLite::TransactionBehavior::IMMEDIATE);
+    SQLite::Statement remove(connection_->database, "DELETE FROM recordings WHERE name = ?1");
     for (const std::string& name : changes.removed) {
       remove.bind(1, name);
       remove.exec();
       remove.reset();
     }
     // Bound values come back as they will be read, for the checksum.
-    SQLite::Statement echo(*database_, "SELECT ?1,?2,?3,?4,?5,?6,?7,?8,?9,?10,?11,?12,?13,?14");
-    SQLite::Statement put(*database_,
+    SQLite::Statement echo(connection_->database,
+                           "SELECT ?1,?2,?3,?4,?5,?6,?7,?8,?9,?10,?11,?12,?13,?14");
+    SQLite::Statement put(connection_->database,
                           absl::StrCat("INSERT OR REPLACE INTO recordings (", kColumns,
                                        ") VALUES (?1,?2,?3,?4,?5,?6,?7,?8,?9,?10,?11,?12,?13,?14,"
                                        "?15)"));
@@ -240,7 +245,8 @@ absl::StatusOr<std::vector<v1::RecordingEntry>> IndexFile::Select(
   return Guarded(file_, [&]() -> absl::StatusOr<std::vector<v1::RecordingEntry>> {
     const BoundSql sql = SqlOf(query);
     SQLite::Statement rows(
-        *database_, absl::StrCat("SELECT ", kColumns, " FROM recordings", sql.where_and_order));
+        connection_->database,
+        absl::StrCat("SELECT ", kColumns, " FROM recordings", sql.where_and_order));
     for (size_t i = 0; i < sql.values.size(); ++i) {
       std::visit([&](const auto& value) { rows.bind(static_cast<int>(i) + 1, value); },
                  sql.values[i]);

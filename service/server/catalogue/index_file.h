@@ -14,10 +14,6 @@
 #include "eyebox/v1/recording_service.pb.h"
 #include "service/server/catalogue/query.h"
 
-namespace SQLite {
-class Database;
-}  // namespace SQLite
-
 namespace eyebox::service {
 
 struct IndexRow {
@@ -53,10 +49,11 @@ class IndexFile {
   absl::StatusOr<std::vector<v1::RecordingEntry>> Select(const CatalogueQuery& query) const;
 
  private:
-  IndexFile(std::filesystem::path file, std::unique_ptr<SQLite::Database> database);
+  struct Connection;
+  IndexFile(std::filesystem::path file, std::unique_ptr<Connection> connection);
 
   std::filesystem::path file_;
-  std::unique_ptr<SQLite::Database> database_;
+  std::unique_ptr<Connection> connection_;
 };
 
 }  // namespace eyebox::service

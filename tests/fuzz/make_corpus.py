@@ -39,6 +39,16 @@ def requests():
     put("requests", "run-rig", b"\xff" + field(1, "id-2") + field(3, rig))
 
 
+def list_recordings():
+    put("list_recordings", "all", "")
+    put("list_recordings", "words", "state = COMPLETE AND origin != SIMULATED AND series:''\nname desc")
+    put("list_recordings", "text", 'rig = "left \\"eye\\"" AND name != recordings/a*\nstart_time')
+    put("list_recordings", "numbers", "captures >= 3 AND frames < 100 AND bytes > 0 AND levels=17")
+    put("list_recordings", "times",
+        "start_time >= 1970-01-01 AND start_time < \"2026-11-01T09:30:00+01:00\"\nstart_time desc")
+    put("list_recordings", "token", "\n\nMjAwIDUgcmVjb3JkaW5ncy9h")
+
+
 def rig_and_plan():
     put("rig_and_plan", "rig", 'name: "lab"\ncamera_uri: "sim:rift-s-like"\nseed: 7\n')
     put("rig_and_plan", "rig-devices",
@@ -163,6 +173,6 @@ def job_log():
     put("job_log", "torn", whole + '{"sequence":3,"jo')
 
 
-for make in (requests, rig_and_plan, manifest, frame_records, cube, strip, index_csv,
-             serial_framing, scene, job_log):
+for make in (requests, list_recordings, rig_and_plan, manifest, frame_records, cube, strip,
+             index_csv, serial_framing, scene, job_log):
     make()

@@ -4,9 +4,11 @@
 #include <fcntl.h>
 #include <sys/file.h>
 
+#include <chrono>
 #include <iterator>
 #include <optional>
 #include <system_error>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -21,6 +23,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kRemedy[] = "give a state folder that can be written to";
+
+constexpr std::chrono::milliseconds kLockPause(10);
+
+absl::Status Stopped() { return absl::CancelledError("the catalogue is being closed"); }
 
 // The file has to be made anew.
 bool IsUseless(const absl::Status& status) {
@@ -62,8 +68,11 @@ absl::StatusOr<OwnedFd> Catalogue::Lock() const {
   const fs::path file = state_ / "catalogue.lock";
   OwnedFd fd(open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0660));
   if (fd.get() < 0) return SystemFailed(file.string(), errno, kRemedy);
-  while (flock(fd.get(), LOCK_EX) != 0) {
-    if (errno != EINTR) return SystemFailed(file.string(), errno, kRemedy);
+  // Looks again and again instead of waiting in the kernel, where Stop would not be heard.
+  while (flock(fd.get(), LOCK_EX | LOCK_NB) != 0) {
+    if (errno != EWOULDBLOCK && errno != EINTR) return SystemFailed(file.string(), errno, kRemedy);
+    if (stopping_) return Stopped();
+    std::this_thread::sleep_for(kLockPause);
   }
   return fd;
 }
@@ -116,7 +125,7 @@ absl::StatusOr<IndexChanges> Catalogue::ChangesSince(const Stamps& known) const 
   Stamps gone = known;
   IndexChanges changes;
   for (const std::string& name : served.recordings) {
-    if (stopping_) return absl::CancelledError("the catalogue is being closed");
+    if (stopping_) return Stopped();
     // Before the files are read: what is touched meanwhile is read again next time.
     std::string stamp = StampOf(*data_, name, clock_->RealNs());
     const auto before = known.find(name);

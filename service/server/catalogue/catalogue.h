@@ -44,7 +44,8 @@ class Catalogue {
   // Answers from the file as it is. Errors: InvalidArgument with the field, those of IndexFile.
   absl::StatusOr<v1::ListRecordingsResponse> Look(const v1::ListRecordingsRequest& request) const;
 
-  // Calls under way end with Cancelled before they read another recording.
+  // Calls under way end with Cancelled before they read another recording, also those that wait for
+  // another process.
   void Stop() { stopping_ = true; }
 
  private:

@@ -1,6 +1,8 @@
 // What the catalogue says of recordings, and that it follows the files.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 
 #include <algorithm>
 #include <atomic>
@@ -217,6 +219,14 @@ TEST_F(CatalogueTest, SeveralProcessesKeepOneFile) {
     });
   }
   for (std::thread& thread : threads) thread.join();
+}
+
+TEST_F(CatalogueTest, StopIsHeardWhileAnotherProcessHoldsTheFile) {
+  const OwnedFd lock(open((State() / "catalogue.lock").c_str(), O_RDWR | O_CREAT, 0600));
+  ASSERT_EQ(flock(lock.get(), LOCK_EX), 0);
+  std::thread waiting([&] { EXPECT_TRUE(absl::IsCancelled(catalogue_->Refresh())); });
+  catalogue_->Stop();
+  waiting.join();
 }
 
 TEST_F(CatalogueTest, StoppedItReadsNoMore) {

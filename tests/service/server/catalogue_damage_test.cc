@@ -120,6 +120,14 @@ TEST_F(CatalogueDamageTest, LogOfAnotherFileIsNotReadIntoIt) {
   EXPECT_EQ(Page({}).SerializeAsString(), truth_);
 }
 
+TEST_F(CatalogueDamageTest, WhatAKilledRebuildLeftIsNoHindrance) {
+  for (const char* end : {".new", ".new-wal", ".new-shm", "-wal", "-journal"}) {
+    std::ofstream(File().string() + end) << "left behind";
+  }
+  std::filesystem::remove(File());
+  ExpectMadeAnew("does not exist");
+}
+
 // One flipped bit, anywhere: the answer is the truth, whether SQLite noticed or the checksums did.
 TEST_F(CatalogueDamageTest, FlippedBitsNeverChangeAnAnswer) {
   const std::string whole = *ReadWholeFile(File());

@@ -3,6 +3,7 @@
 #define EYEBOX_TESTS_SERVICE_SERVER_SMALL_RECORDING_H_
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -73,14 +74,25 @@ inline void WriteSmall(const std::filesystem::path& folder, const SmallRecording
   if (keep) *keep = *std::move(writer);
 }
 
-// One byte of a file changes in place.
+// When the file was touched last, as the kernel's clock has it, which advances in steps.
+inline std::pair<time_t, long> ChangeTimeOf(const std::filesystem::path& file) {
+  struct stat status = {};
+  EXPECT_EQ(stat(file.c_str(), &status), 0);
+  return {status.st_ctim.tv_sec, status.st_ctim.tv_nsec};
+}
+
+// One byte of a file changes in place, later than whatever was done to the file before.
 inline void FlipByte(const std::filesystem::path& file, std::streamoff at) {
+  const auto before = ChangeTimeOf(file);
   std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
   stream.seekg(at);
   const int byte = stream.get();
-  stream.seekp(at);
-  stream.put(static_cast<char>(byte ^ 1));
-  ASSERT_TRUE(stream.good());
+  do {
+    stream.seekp(at);
+    stream.put(static_cast<char>(byte ^ 1));
+    stream.flush();
+    ASSERT_TRUE(stream.good());
+  } while (ChangeTimeOf(file) == before);
 }
 
 }  // namespace eyebox::service

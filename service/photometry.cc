@@ -1,6 +1,8 @@
 #include "service/photometry.h"
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,6 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "capture/base/csv.h"
 #include "capture/base/status.h"
+#include "fit/base/conditioning.h"
 #include "optics/photometry/colour_matrix.h"
 #include "optics/photometry/fit_luminance_scale.h"
 #include "optics/photometry/photodiode_scale.h"
@@ -92,6 +95,16 @@ absl::StatusOr<std::vector<optics::ColourSample>> Samples(const CsvTable& table)
   return samples;
 }
 
+double WorstCondition(const optics::ColourMatrix& matrix) {
+  const std::span<const double> rows = matrix.covariance;
+  const auto block = static_cast<size_t>(matrix.columns) * matrix.columns;
+  double worst = 1;
+  for (size_t row = 0; row < 3; ++row) {
+    worst = std::max(worst, fit::ConditionNumber(rows.subspan(row * block, block)));
+  }
+  return worst;
+}
+
 void DescribeMatrix(const optics::ColourMatrix& matrix, bool absolute,
                     v1::PhotometryResult& result) {
   v1::ColourScale& colour = *result.mutable_colour();
@@ -101,6 +114,7 @@ void DescribeMatrix(const optics::ColourMatrix& matrix, bool absolute,
   colour.set_leave_one_out_rms_4(matrix.leave_one_out_rms_4);
   colour.mutable_matrix()->Add(matrix.matrix.begin(), matrix.matrix.end());
   colour.mutable_covariance()->Add(matrix.covariance.begin(), matrix.covariance.end());
+  colour.set_condition_number(WorstCondition(matrix));
   const std::string unit = absolute ? "cd/m2 per DN/s" : "relative";
   for (int row = 0; row < 3; ++row) {
     for (int k = 0; k < matrix.columns; ++k) {

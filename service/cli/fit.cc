@@ -116,6 +116,7 @@ absl::Status Run(const Options& options) {
               result.weighting().c_str(), report::Percent(result.rms_relative()).c_str(),
               report::Percent(result.leave_one_out_rms_relative()).c_str());
   PrintParameters(result.parameters());
+  std::printf("  condition number %.3g\n", result.condition_number());
   std::printf("  %s\n", result.choice_reason().c_str());
   PrintVerdict(result.field());
   PrintComparison(result);

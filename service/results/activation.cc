@@ -9,6 +9,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "capture/base/status.h"
+#include "fit/base/conditioning.h"
 #include "service/artifacts.h"
 #include "service/results/parameter.h"
 
@@ -136,6 +137,7 @@ v1::ActivationResult DescribeActivation(const fit::ActivationChoice& choice,
   result.set_chi_square(fit.chi_square);
   result.set_degrees_of_freedom(fit.degrees_of_freedom);
   result.mutable_covariance()->Add(fit.covariance.begin(), fit.covariance.end());
+  result.set_condition_number(fit::ConditionNumber(fit.covariance));
   AddLevels(fit, result);
   result.set_luminance_unit(series.luminance_unit);
   result.set_scale_relative_sigma(series.scale_relative_sigma);

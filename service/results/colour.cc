@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "capture/base/status.h"
+#include "fit/base/conditioning.h"
 #include "service/results/parameter.h"
 
 namespace eyebox::service {
@@ -108,6 +109,7 @@ v1::ColourResult DescribeColour(const fit::ColourChoice& choice) {
   AddConstancy(choice, result);
   AddAlternatives(choice, result);
   result.mutable_covariance()->Add(fit.covariance.begin(), fit.covariance.end());
+  result.set_condition_number(fit::ConditionNumber(fit.covariance));
   result.set_chi_square(fit.chi_square);
   result.set_degrees_of_freedom(fit.degrees_of_freedom);
   result.set_aicc(fit.aicc);

@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "capture/base/status.h"
+#include "fit/base/conditioning.h"
 #include "optics/geometry/solid_angle.h"
 #include "service/results/parameter.h"
 
@@ -55,6 +56,8 @@ void AddParameters(const optics::LensCalibration& calibration, v1::GeometryResul
       result.add_covariance(calibration.covariance[i * kParameters.size() + j]);
     }
   }
+  result.set_condition_number(fit::ConditionNumber(
+      {result.covariance().data(), static_cast<size_t>(result.covariance_size())}));
 }
 
 // Field angles of the middles of the edges, and the solid angle of what is seen.

@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "capture/base/status.h"
+#include "fit/base/conditioning.h"
 #include "service/result_json.h"
 #include "service/results/parameter.h"
 
@@ -96,6 +97,7 @@ v1::ScatterResult DescribeScatter(const ScatterFindings& findings) {
   result.set_chi_square(fit.chi_square);
   result.set_degrees_of_freedom(fit.degrees_of_freedom);
   result.set_identifiability(fit.identifiability);
+  result.set_condition_number(fit::ConditionNumber(fit.covariance));
   result.set_termination(fit.termination);
   for (const fit::PredictedReading& reading : findings.predicted) AddPrediction(reading, result);
   result.set_luminance_unit(findings.series.luminance_unit);

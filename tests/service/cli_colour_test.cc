@@ -55,6 +55,7 @@ TEST_F(CliColourTest, FitPrintsVerdictsAndWhatATableNeeds) {
   EXPECT_FALSE(result.additivity().passed());
   EXPECT_LT(result.leave_one_out_rms_relative().y(), 0.02);
   EXPECT_GT(result.leave_one_out_rms_relative().y(), 0);
+  EXPECT_GT(result.condition_number(), 1);
   EXPECT_EQ(result.parameters_size(), 21);
   EXPECT_EQ(result.stimuli_size(), 33);
   EXPECT_EQ(result.warnings_size(), 1);  // no mixtures

@@ -67,6 +67,7 @@ TEST(CliGeometry, ViewsOfDotsGiveFieldAnglesToAMap) {
   const std::string file = (folder / "geometry.json").string();
   const auto geometry = ParsedFrom<v1::GeometryResult>(
       RunEyebox(Command(kColumns) + "--pupil 2 --eye-pupil 1.5 --json --out " + file));
+  EXPECT_GT(geometry.condition_number(), 1);
   EXPECT_TRUE(geometry.accepted());
   EXPECT_EQ(geometry.views_size(), 6);
   ASSERT_EQ(geometry.parameters_size(), 9);

@@ -97,6 +97,7 @@ TEST(CliPhotometry, MismatchAndColourComeFromTables) {
             "104,110,105,94,100,108\n50,55,50,47,50,54\n20,90,60,50,80,70\n");
   const auto colour =
       ParsedFrom<v1::PhotometryResult>(RunEyebox("photometry colour " + colours + " --json"));
+  EXPECT_GT(colour.colour().condition_number(), 1);
   EXPECT_EQ(colour.colour().unit(), "relative");
   EXPECT_EQ(colour.colour().matrix_size(), 3 * colour.colour().columns());
   const Outcome column = RunEyebox("photometry scale " + colours);

@@ -38,6 +38,7 @@ TEST(CliScatter, ARecordingOfDisksTellsWAndItsFigures) {
   const auto result = ParsedFrom<v1::ScatterResult>(
       RunEyebox("scatter " + RecordedDisks().string() + " --reach-deg 20.9 --out " +
                 (folder / "out").string() + " --json"));
+  EXPECT_GT(result.condition_number(), 1);
   const v1::Parameter& share = Named(result.parameters(), "tail_share");
   EXPECT_NEAR(share.value(), 0.02, 4 * share.sigma());
   EXPECT_LT(share.sigma(), 0.01);

@@ -134,6 +134,7 @@ TEST_F(RealInput, AMeasuredSeriesIsPredictedAndItsTablesCertified) {
       RunEyebox("fit --csv " + (folder_ / "luminance/achromatic_420.csv").string() + " --json");
   const auto fit = ParsedFrom<v1::ActivationResult>(fitted);
   EXPECT_LE(fit.leave_one_out_rms_relative(), 0.012);  // published method: 0.0605
+  EXPECT_GT(fit.condition_number(), 1);
   EXPECT_EQ(fit.source(), "achromatic_420.csv");
   ASSERT_TRUE(WriteFileAtomically(out_ / "fit.json", fitted.out).ok());
   const auto certified = [&](int size) {

@@ -26,6 +26,10 @@ struct FieldStack {
   size_t LocationCount() const { return drives.empty() ? 0 : luminance.size() / drives.size(); }
 };
 
+// What keeping the luminances of a stack in single precision costs at most, of a fitted luminance,
+// over displays of any gamma, black and brightness (numerics table).
+inline constexpr double kSinglePrecisionLoss = 1e-6;
+
 struct CommonExponentOptions {
   // Weight of each level's squared residual, above 0, [levels]; empty: 1 / (mean luminance)^2, so
   // that errors count relatively; the mean of at least kRelativeFloor of the brightest level's.

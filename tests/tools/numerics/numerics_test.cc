@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "fit/field/common_exponent.h"
 #include "tests/tools/numerics/single_precision.h"
 #include "tests/tools/numerics/worst_case.h"
 
@@ -35,8 +36,8 @@ TEST(NumericsTest, SinglePrecisionCostsNextToNothingOverTheExtremeGrid) {
                  << "gamma " << loss.gamma << ", black " << loss.black << ", white "
                  << loss.white_cd_m2 << ", levels " << loss.levels);
     EXPECT_LT(loss.gamma_float64, 1e-12);
-    EXPECT_LT(loss.gamma_float32, 1e-6);
-    EXPECT_LT(loss.luminance_float32, 1e-6);
+    EXPECT_LT(loss.gamma_float32, fit::kSinglePrecisionLoss);
+    EXPECT_LT(loss.luminance_float32, fit::kSinglePrecisionLoss);
     EXPECT_GE(loss.condition, 1);
   }
 }

@@ -16,6 +16,7 @@ constexpr double kPercent = 100;
 
 struct Options {
   std::string rig;
+  std::string pilot;
   std::string scene;
   std::string tolerance = "2%";
   std::string budget;
@@ -46,7 +47,14 @@ absl::Status Run(const Options& options) {
   PlanRequest request = options.request;
   request.scene = options.scene;
   request.out = options.out;
-  EYEBOX_ASSIGN_OR_RETURN(request.rig, RigOf(options.rig));
+  request.pilot = options.pilot;
+  if (options.pilot.empty()) {
+    if (options.rig.empty()) {
+      return BadInput("plan", "neither a rig nor --pilot is given",
+                      "give sim:rift-s-like, or --pilot RECORDING of your own rig");
+    }
+    EYEBOX_ASSIGN_OR_RETURN(request.rig, RigOf(options.rig));
+  }
   EYEBOX_ASSIGN_OR_RETURN(request.tolerance, ShareOf("--tolerance", options.tolerance));
   if (!options.budget.empty()) {
     EYEBOX_ASSIGN_OR_RETURN(request.budget_s, SecondsOf("--budget", options.budget));
@@ -74,10 +82,15 @@ void AddPlan(CLI::App& app, Work& work) {
   AddCommand<Options>(
       app, work, "plan",
       "The cheapest measurement that keeps a tolerance for a scene, and why each part is needed",
-      "eyebox plan --scene room.textproto --tolerance 2% sim:rift-s-like --out plan.textproto",
+      "eyebox plan --scene room.textproto --tolerance 2% sim:rift-s-like --out plan.textproto\n"
+      "  eyebox plan --scene room.textproto --tolerance 2% --pilot recording --out plan.textproto",
       [](CLI::App& command, Options& options) {
-        command.add_option("rig", options.rig, "Rig file, or the URI of a simulated camera")
-            ->required();
+        CLI::Option* const rig =
+            command.add_option("rig", options.rig, "Rig file, or the URI of a simulated camera");
+        CLI::Option* const pilot = command.add_option(
+            "--pilot", options.pilot,
+            "Instead of a simulated rig: a recording of yours, which tells its prices");
+        rig->excludes(pilot);
         command.add_option("--scene", options.scene, "Scene file, as eyebox predict takes it")
             ->required();
         command

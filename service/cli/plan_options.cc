@@ -24,7 +24,8 @@ std::vector<CLI::Option*> BindPlan(CLI::App& command, capture::PlanOptions& plan
       command
           .add_option("--black-disks", plan.black_disk_diameters_deg,
                       "Likewise of black disks on the bright field")
-          ->delimiter(',')};
+          ->delimiter(','),
+      command.add_option("--disk-repeats", plan.disk_repeats, "Frames per disk and exposure")};
   for (CLI::Option* option : options) option->capture_default_str();
   return options;
 }

@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <filesystem>
 #include <string>
 
 #include "capture/base/status.h"
@@ -36,7 +37,11 @@ void PrintLines(const v1::TradeoffResult& result) {
 absl::Status Run(const Options& options) {
   TradeoffRequest request = options.request;
   request.out = options.out;
-  EYEBOX_ASSIGN_OR_RETURN(request.rig, RigOf(options.rig));
+  if (std::filesystem::is_directory(options.rig)) {
+    request.recording = options.rig;
+  } else {
+    EYEBOX_ASSIGN_OR_RETURN(request.rig, RigOf(options.rig));
+  }
   EYEBOX_ASSIGN_OR_RETURN(const v1::TradeoffResult result, RunTradeoff(request, TerminalWatcher()));
   PrintWarnings(result.warnings());
   if (options.json) return PrintJson(result);
@@ -63,10 +68,13 @@ absl::Status Run(const Options& options) {
 void AddTradeoff(CLI::App& app, Work& work) {
   AddCommand<Options>(
       app, work, "tradeoff",
-      "Time and error of every lever of a measurement, predicted and measured on a simulated rig",
-      "eyebox tradeoff sim:rift-s-like --out prices",
+      "Time and error of every lever of a measurement, predicted and measured: on a simulated rig, "
+      "or on half of a recording's frames against the other half",
+      "eyebox tradeoff sim:rift-s-like --out prices\n  eyebox tradeoff recording --out prices",
       [](CLI::App& command, Options& options) {
-        command.add_option("rig", options.rig, "Rig file, or the URI of a simulated camera")
+        command
+            .add_option("rig", options.rig,
+                        "Rig file, the URI of a simulated camera, or a recording")
             ->required();
         command.add_option("--out", options.out,
                            "Folder for tradeoff.json, tradeoff.csv and tradeoff.svg");

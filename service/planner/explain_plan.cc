@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "capture/base/status.h"
+#include "fit/field/common_exponent.h"
 
 namespace eyebox::service {
 namespace {
@@ -16,9 +17,13 @@ constexpr double kPercent = 100;
 
 class Explainer {
  public:
-  Explainer(Predictor& predictor, const Planned& planned, const SceneNeed& scene,
+  Explainer(Predictor& predictor, const Planned& planned, const SceneNeed& scene, double tolerance,
             v1::MeasurementPlan& plan)
-      : predictor_(predictor), planned_(planned), scene_(scene), plan_(plan) {}
+      : predictor_(predictor),
+        planned_(planned),
+        scene_(scene),
+        tolerance_(tolerance),
+        plan_(plan) {}
 
   absl::Status All() {
     Colour();
@@ -27,6 +32,7 @@ class Explainer {
     Levels();
     Calibration();
     Table();
+    Precision();
     return absl::OkStatus();
   }
 
@@ -165,9 +171,18 @@ class Explainer {
                               kPercent * planned_.prediction.level_bias));
   }
 
+  // PlanMeasurement() takes no tolerance that would ask for more.
+  void Precision() {
+    Add("precision", "single",
+        absl::StrFormat("it loses less than %g %% of a luminance, and a tenth of the tolerance is "
+                        "%.3g %%",
+                        kPercent * fit::kSinglePrecisionLoss, kPercent * tolerance_ / 10));
+  }
+
   Predictor& predictor_;
   const Planned& planned_;
   const SceneNeed& scene_;
+  const double tolerance_;
   v1::MeasurementPlan& plan_;
 };
 
@@ -183,8 +198,8 @@ void Describe(const Prediction& prediction, v1::ErrorParts& parts) {
 }
 
 absl::Status ExplainPlan(Predictor& predictor, const Planned& planned, const SceneNeed& need,
-                         v1::MeasurementPlan& plan) {
-  return Explainer(predictor, planned, need, plan).All();
+                         double tolerance, v1::MeasurementPlan& plan) {
+  return Explainer(predictor, planned, need, tolerance, plan).All();
 }
 
 }  // namespace eyebox::service

@@ -13,7 +13,7 @@ void Describe(const Prediction& prediction, v1::ErrorParts& parts);
 
 // Adds the decisions. Errors: those of Predictor.
 absl::Status ExplainPlan(Predictor& predictor, const Planned& planned, const SceneNeed& need,
-                         v1::MeasurementPlan& plan);
+                         double tolerance, v1::MeasurementPlan& plan);
 
 }  // namespace eyebox::service
 

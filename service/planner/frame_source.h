@@ -1,5 +1,5 @@
-// Where the frames of a setting come from. A simulated rig is the only source so far: it alone
-// knows the truth.
+// Where the frames of a setting come from: a simulated rig, which knows the truth, or a recording,
+// part of which is taken for it.
 #ifndef EYEBOX_SERVICE_PLANNER_FRAME_SOURCE_H_
 #define EYEBOX_SERVICE_PLANNER_FRAME_SOURCE_H_
 
@@ -21,6 +21,16 @@ struct Truth {
   std::function<double(const DriveRgb&)> relative_luminance;  // at the reference point, 1 at white
   double glare_factor = 1;      // luminance amid a white disk on black over that of the white field
   double stated_over_true = 1;  // of the luminance scale, common to everything measured
+  double white_relative_variance = 0;  // of its own noise, mean over places
+};
+
+// What a source can give that cannot give everything.
+struct Stock {
+  std::vector<double> drives;     // of grey full fields, ascending
+  int frames = 0;                 // of each of them, in each exposure
+  int calibration_frames = 0;     // of darks and of flats, in each exposure
+  std::vector<double> disks_deg;  // white on black, ascending
+  int disk_frames = 0;            // of each of them, in each exposure
 };
 
 class FrameSource {
@@ -37,6 +47,7 @@ class FrameSource {
   // question, and the first ones where fewer are asked for.
   virtual absl::StatusOr<std::vector<optics::Stack>> Take(const Stimulus& stimulus,
                                                           const std::vector<int>& frames) = 0;
+  virtual const Stock* Limits() const { return nullptr; }  // none: it gives whatever is asked for
   // `disk_deg`: diameter of the disk of glare_factor; 0: none.
   virtual absl::StatusOr<Truth> TruthFor(double disk_deg) = 0;
 };

@@ -80,7 +80,7 @@ absl::Status MeasureDisks(FrameSource& source, const Setting& setting, const Pil
                           const Clock& clock, Pilot& pilot) {
   for (const double diameter_deg : options.disks_deg) {
     Setting with_disk = setting;
-    with_disk.disk_frames = options.frames;
+    with_disk.disk_frames = options.disk_frames;
     EYEBOX_ASSIGN_OR_RETURN(
         const Measured measured,
         MeasureSetting(source, with_disk, {.disk_deg = diameter_deg}, {}, clock));
@@ -90,6 +90,18 @@ absl::Status MeasureDisks(FrameSource& source, const Setting& setting, const Pil
 }
 
 }  // namespace
+
+PilotOptions PilotWithin(const Stock* limits) {
+  PilotOptions options;
+  if (limits == nullptr) return options;
+  const auto levels = static_cast<int>(limits->drives.size());
+  if ((levels - 1) % (options.levels - 1) != 0) options.levels = levels;
+  options.frames = std::min(options.frames, limits->frames);
+  options.calibration_frames = std::min(options.calibration_frames, limits->calibration_frames);
+  options.disks_deg = limits->disks_deg;
+  options.disk_frames = std::min(options.disk_frames, limits->disk_frames);
+  return options;
+}
 
 absl::StatusOr<Pilot> MeasurePilot(FrameSource& source, const Clock& clock,
                                    const PilotOptions& options) {

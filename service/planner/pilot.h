@@ -47,9 +47,13 @@ struct PilotOptions {
   int frames = 4;  // of each exposure
   int calibration_frames = 8;
   std::vector<double> disks_deg = {2, 4, 8, 16, 30};
+  int disk_frames = 4;  // of each exposure
   fit::ActivationModel model = fit::ActivationModel::kGammaWithCutoff;
   bool primaries = false;
 };
+
+// The usual pilot as far as a source has what it takes; nullptr: it has everything.
+PilotOptions PilotWithin(const Stock* limits);
 
 // Errors: those of MeasureSetting.
 absl::StatusOr<Pilot> MeasurePilot(FrameSource& source, const Clock& clock,

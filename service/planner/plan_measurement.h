@@ -17,14 +17,16 @@ namespace eyebox::service {
 
 struct PlanRequest {
   std::filesystem::path scene;
-  double tolerance = 0.02;         // 95 % of relative errors are to lie within it
-  std::optional<double> budget_s;  // of captures
-  capture::RigConfig rig;          // a simulated one, on which the pilot is measured
-  std::filesystem::path out;       // capture plan (.textproto); empty: none is written
+  double tolerance = 0.02;           // 95 % of relative errors are to lie within it
+  std::optional<double> budget_s;    // of captures
+  capture::RigConfig rig;            // a simulated one, on which the pilot is measured
+  std::filesystem::path pilot = {};  // instead: a recording of the rig, of which it is made
+  std::filesystem::path out;         // capture plan (.textproto); empty: none is written
   Costs costs;
 };
 
-// Errors: those of ReadScene and PredictScene; InvalidArgument (a rig that is not simulated);
+// Errors: those of ReadScene and PredictScene; Unimplemented (a rig that is not simulated,
+// without a recording); those of RecordedFrames::Read;
 // FailedPrecondition (tolerance and budget cannot be kept together: names what can); those of
 // MeasurePilot.
 absl::StatusOr<v1::MeasurementPlan> PlanMeasurement(const PlanRequest& request,

@@ -11,7 +11,7 @@
 #include "capture/camera/sim/parameters.h"
 #include "capture/camera/sim/sensor.h"
 #include "optics/reduce/reduce_level.h"
-#include "service/planner/frame_source.h"
+#include "service/planner/held_frames.h"
 
 namespace eyebox::service {
 
@@ -20,7 +20,7 @@ struct SimulatedMeasurementOptions {
   int calibration_frames = 8;                               // what Measure() is calibrated with
 };
 
-class SimulatedMeasurement final : public FrameSource {
+class SimulatedMeasurement final : public HeldFrames {
  public:
   // Another sensor, another true luminance of the flat and other noise for each seed.
   SimulatedMeasurement(const capture::SimParameters& parameters, uint64_t seed,
@@ -30,15 +30,12 @@ class SimulatedMeasurement final : public FrameSource {
   int Bits() const override { return parameters_.sensor.bits; }
   const PinholeGeometry& Geometry() const override { return parameters_.geometry; }
   const std::vector<double>& ExposuresS() const override { return options_.exposures_s; }
-  absl::StatusOr<const optics::Calibration*> CalibrationOf(int frames) override;
-  absl::StatusOr<std::vector<optics::Stack>> Take(const Stimulus& stimulus,
-                                                  const std::vector<int>& frames) override;
   absl::StatusOr<Truth> TruthFor(double disk_deg) override;
 
   // Darks, flats and noise model from calibration_frames, as `eyebox run` learns them.
   absl::Status Calibrate() { return CalibrationOf(options_.calibration_frames).status(); }
   const optics::Calibration& calibration() const {
-    return calibrations_.at(options_.calibration_frames);
+    return calibrations().at(options_.calibration_frames);
   }
   // Reduced with it.
   absl::StatusOr<optics::ReducedLevel> Measure(const Stimulus& stimulus, int repeats);
@@ -48,23 +45,19 @@ class SimulatedMeasurement final : public FrameSource {
   absl::StatusOr<Image<double>> LuminanceOf(const Stimulus& stimulus) const;
 
  private:
-  using Frames = std::vector<std::vector<uint16_t>>;
   // The scene of one stimulus, and the frames that were asked for so far.
   struct Shown {
     CaptureSpec spec;
     Image<double> rate_e_s;
-    std::vector<Frames> frames;                // [exposures]
-    std::vector<capture::NoiseSource> noises;  // [exposures]
+    std::vector<std::vector<std::vector<uint16_t>>> frames;  // [exposures][frames]
+    std::vector<capture::NoiseSource> noises;                // [exposures]
   };
 
+  absl::StatusOr<std::vector<Counts>> FramesOf(const CaptureSpec& scene, size_t exposure,
+                                               int count) override;
+  CaptureSpec FlatScene() const override;
+  optics::KnownLuminance StatedFlat() const override;
   absl::StatusOr<Shown*> Show(const CaptureSpec& spec);
-  const Frames& Exposed(Shown& shown, size_t exposure, int frames);
-  absl::StatusOr<optics::Stack> StackOf(Shown& shown, size_t exposure, int frames);
-  absl::StatusOr<std::vector<optics::Stack>> Bracket(const CaptureSpec& spec,
-                                                     const std::vector<int>& frames);
-  absl::StatusOr<optics::NoiseModel> MeasureNoise(const optics::Stack& shortest_dark, int frames,
-                                                  const optics::DefectMap& defects);
-  absl::StatusOr<optics::Calibration> Calibrate(int frames);
 
   capture::SimParameters parameters_;
   uint64_t seed_;
@@ -72,7 +65,6 @@ class SimulatedMeasurement final : public FrameSource {
   capture::FixedPattern pattern_;
   double flat_factor_ = 1;
   std::map<std::vector<uint64_t>, Shown> shown_;
-  std::map<int, optics::Calibration> calibrations_;
 };
 
 }  // namespace eyebox::service

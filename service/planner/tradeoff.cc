@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -17,6 +18,7 @@ namespace eyebox::service {
 namespace {
 
 constexpr double kPilotShare = 0.05;  // of the progress
+constexpr double kNormal95 = 1.96;
 
 // What one trial says about one line.
 struct Trial {
@@ -41,10 +43,11 @@ absl::StatusOr<Trial> Try(FrameSource& source, const TradeoffLine& line, const C
                           MeasureSetting(source, line.what.setting, need, region, clock));
   const std::vector<double> errors = ErrorsOf(measured, truth, need, region);
   Trial trial;
-  for (const double error : errors) {
-    trial.share_within += std::abs(error) <= line.predicted.bound_95 ? 1 : 0;
-  }
-  trial.mean_square = MeanSquare(errors);
+  // The truth's own noise is no error of the measurement.
+  const double bound =
+      std::hypot(line.predicted.bound_95, kNormal95 * std::sqrt(truth.white_relative_variance));
+  for (const double error : errors) trial.share_within += std::abs(error) <= bound ? 1 : 0;
+  trial.mean_square = MeanSquare(errors) - truth.white_relative_variance;
   trial.share_within /= static_cast<double>(errors.size());
   trial.departure_mean_square = MeanSquare(DeparturesOf(measured.fits[0].activation, truth, need));
   trial.compute_s = measured.seconds.Sum();
@@ -63,12 +66,12 @@ void Summarise(const std::vector<Trial>& trials, TradeoffLine& line) {
     line.share_within_bound += trial.share_within / count;
     line.compute_s += trial.compute_s / count;
   }
-  const double mean = sum / count;
+  const double mean = std::max(sum / count, 0.0);
   line.rms = std::sqrt(mean);
   line.departure_rms = std::sqrt(departure / count);
   if (trials.size() < 2) return;
   const double variance = std::max(squares / count - mean * mean, 0.0) / (count - 1);
-  line.rms_sigma = std::sqrt(variance) / (2 * line.rms);
+  line.rms_sigma = line.rms > 0 ? std::sqrt(variance) / (2 * line.rms) : std::pow(variance, 0.25);
 }
 
 // One trial of every line.
@@ -150,7 +153,10 @@ void MarkFront(std::vector<TradeoffLine>& lines) {
 
 double MedianDisagreement(const std::vector<TradeoffLine>& lines) {
   std::vector<double> off;
-  for (const TradeoffLine& line : lines) off.push_back(std::abs(line.predicted.rms / line.rms - 1));
+  for (const TradeoffLine& line : lines) {
+    off.push_back(line.rms > 0 ? std::abs(line.predicted.rms / line.rms - 1)
+                               : std::numeric_limits<double>::infinity());
+  }
   const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
   std::nth_element(off.begin(), middle, off.end());
   return *middle;
@@ -158,6 +164,22 @@ double MedianDisagreement(const std::vector<TradeoffLine>& lines) {
 
 bool IsEven(const TradeoffLine& line) {
   return line.what.lever == "baseline" || line.what.lever == "frames per level";
+}
+
+// Cases that the source can give, and the others told in `left_out`.
+std::vector<TradeoffCase> Within(const Stock* limits, std::vector<TradeoffCase> cases,
+                                 std::vector<std::string>& left_out) {
+  if (limits == nullptr) return cases;
+  std::vector<TradeoffCase> within;
+  for (TradeoffCase& what : cases) {
+    const std::string why = WhyBeyond(*limits, what.setting, what.need);
+    if (why.empty()) {
+      within.push_back(std::move(what));
+    } else {
+      left_out.push_back(absl::StrCat(what.lever, ", ", what.setting.name, ": ", why));
+    }
+  }
+  return within;
 }
 
 }  // namespace
@@ -168,8 +190,16 @@ absl::StatusOr<Tradeoff> MeasureTradeoff(const SourceOfTrial& sources,
   EYEBOX_RETURN_IF_ERROR(watcher.Reach(0, "pilot"));
   Tradeoff tradeoff;
   const std::unique_ptr<FrameSource> source = sources(0);
-  EYEBOX_ASSIGN_OR_RETURN(tradeoff.pilot, MeasurePilot(*source, clock));
-  EYEBOX_ASSIGN_OR_RETURN(auto cases, UsualCases(tradeoff.pilot, options.costs));
+  const Stock* const limits = source->Limits();
+  EYEBOX_ASSIGN_OR_RETURN(tradeoff.pilot, MeasurePilot(*source, clock, PilotWithin(limits)));
+  EYEBOX_ASSIGN_OR_RETURN(auto cases, UsualCases(tradeoff.pilot, options.costs, limits));
+  cases = Within(limits, std::move(cases), tradeoff.left_out);
+  if (cases.empty() || cases[0].lever != "baseline") {
+    return Rejected(
+        "tradeoff",
+        "the recording cannot give even the usual measurement: " + tradeoff.left_out.front(),
+        "record evenly spaced levels with several frames each");
+  }
   EYEBOX_ASSIGN_OR_RETURN(tradeoff.lines,
                           PredictLines(tradeoff.pilot, std::move(cases), options.costs));
   EYEBOX_RETURN_IF_ERROR(MeasureLines(sources, options, clock, watcher, tradeoff.lines));

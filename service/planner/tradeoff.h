@@ -26,8 +26,13 @@ struct TradeoffCase {
 };
 
 // Every lever by itself about a usual measurement, some of them together, and levels by design
-// beside evenly spaced ones of the same time. Errors: those of DesignLevels.
-absl::StatusOr<std::vector<TradeoffCase>> UsualCases(const Pilot& pilot, const Costs& costs);
+// beside evenly spaced ones of the same time. Where `limits` are given, a usual measurement within
+// them, and designed levels moved to the nearest there are. Errors: those of DesignLevels.
+absl::StatusOr<std::vector<TradeoffCase>> UsualCases(const Pilot& pilot, const Costs& costs,
+                                                     const Stock* limits = nullptr);
+
+// Why a source with `limits` cannot give a setting; empty where it can.
+std::string WhyBeyond(const Stock& limits, const Setting& setting, const Need& need);
 
 struct TradeoffLine {
   TradeoffCase what;
@@ -44,7 +49,8 @@ struct TradeoffLine {
 struct Tradeoff {
   Pilot pilot;
   std::vector<TradeoffLine> lines;
-  double median_disagreement = 0;  // of |predicted / measured rms - 1|
+  double median_disagreement = 0;     // of |predicted / measured rms - 1|
+  std::vector<std::string> left_out;  // settings that the source cannot give, and why
 };
 
 // A source for each trial, 0 that of the pilot; each with a sensor and noise of its own.

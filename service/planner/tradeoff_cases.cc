@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "absl/strings/str_format.h"
@@ -13,14 +15,31 @@ constexpr int kUsualFrames = 4;
 constexpr int kUsualTable = 64;
 constexpr double kUsualDiskDeg = 8;
 
+double NearestTo(double wanted, const std::vector<double>& values) {
+  return *std::ranges::min_element(values, {}, [&](double v) { return std::abs(v - wanted); });
+}
+
 class CaseList {
  public:
-  explicit CaseList(size_t exposures) : exposures_(exposures) {
-    usual_.levels = Even(kUsualLevels, kUsualFrames);
-    usual_.disk_frames = kUsualFrames;
-    usual_.table_size = kUsualTable;
+  CaseList(size_t exposures, const Stock* limits) : exposures_(exposures) {
     need_.disk_deg = kUsualDiskDeg;
+    int disk_frames = kUsualFrames;
+    if (limits != nullptr) {
+      levels_ = static_cast<int>(limits->drives.size());
+      frames_ = std::min(kUsualFrames, limits->frames);
+      usual_.calibration_frames = std::min(usual_.calibration_frames, limits->calibration_frames);
+      need_.disk_deg = limits->disks_deg.empty() ? 0 : NearestTo(kUsualDiskDeg, limits->disks_deg);
+      disk_frames = std::min(kUsualFrames, limits->disk_frames);
+    }
+    usual_.levels = Even(levels_, frames_);
+    usual_.disk_frames = disk_frames;
+    usual_.table_size = kUsualTable;
   }
+
+  int UsualLevels() const { return levels_; }
+  int UsualFrames() const { return frames_; }
+  int UsualCalibrationFrames() const { return usual_.calibration_frames; }
+  bool LooksAtDisk() const { return need_.disk_deg > 0; }
 
   std::vector<int> Frames(int count) const { return std::vector<int>(exposures_, count); }
   std::vector<LevelFrames> Even(int levels, int frames) const {
@@ -39,6 +58,8 @@ class CaseList {
 
  private:
   size_t exposures_;
+  int levels_ = kUsualLevels;
+  int frames_ = kUsualFrames;
   Setting usual_;
   Need need_;
   std::vector<TradeoffCase> cases_;
@@ -48,11 +69,12 @@ void AddCounts(CaseList& list) {
   list.Add("baseline", "baseline", [](Setting&, Need&) {});
   for (const int frames : {1, 2, 8, 16}) {
     list.Add("frames per level", absl::StrFormat("%d frames", frames),
-             [&](Setting& s, Need&) { s.levels = list.Even(kUsualLevels, frames); });
+             [&](Setting& s, Need&) { s.levels = list.Even(list.UsualLevels(), frames); });
   }
-  for (const int levels : {5, 9, 33}) {
+  for (const int levels : {5, 9, 17, 33}) {
+    if (levels == list.UsualLevels()) continue;
     list.Add("levels", absl::StrFormat("%d levels", levels),
-             [&](Setting& s, Need&) { s.levels = list.Even(levels, kUsualFrames); });
+             [&](Setting& s, Need&) { s.levels = list.Even(levels, list.UsualFrames()); });
   }
   for (const int frames : {2, 4, 16}) {
     list.Add("darks and flats", absl::StrFormat("%d of each", frames),
@@ -106,6 +128,7 @@ void AddFields(CaseList& list) {
 }
 
 void AddGlare(CaseList& list) {
+  if (!list.LooksAtDisk()) return;
   list.Add("scatter", "glare left in", [](Setting& s, Need&) { s.disk_frames = 0; });
   list.Add("scatter", "no disk looked at", [](Setting& s, Need& need) {
     s.disk_frames = 0;
@@ -138,29 +161,76 @@ void AddTogether(CaseList& list) {
   }
 }
 
-absl::Status AddDesigned(const Pilot& pilot, const Costs& costs, CaseList& list) {
+// Each level at the nearest drive there is; frames of those that meet there are added, as far as
+// there are so many.
+std::vector<LevelFrames> MovedInto(const Stock& limits, const std::vector<LevelFrames>& levels) {
+  std::vector<LevelFrames> moved;
+  for (const LevelFrames& level : levels) {
+    const double drive = NearestTo(level.drive, limits.drives);
+    if (moved.empty() || moved.back().drive != drive) {
+      moved.push_back({drive, level.frames});
+      continue;
+    }
+    for (size_t k = 0; k < level.frames.size(); ++k) moved.back().frames[k] += level.frames[k];
+  }
+  for (LevelFrames& level : moved) {
+    for (int& count : level.frames) count = std::min(count, limits.frames);
+  }
+  return moved;
+}
+
+absl::Status AddDesigned(const Pilot& pilot, const Costs& costs, const Stock* limits,
+                         CaseList& list) {
   for (const int frames : {1, 2, 4, 8, 16}) {
-    const double seconds = LevelSeconds(list.Even(kUsualLevels, frames), pilot.exposures_s, costs);
-    EYEBOX_ASSIGN_OR_RETURN(
-        const DesignedLevels designed,
-        DesignLevels(pilot, {}, fit::ErrorAtU::kDeparture, seconds / 3, costs, 8));
+    const double seconds =
+        LevelSeconds(list.Even(list.UsualLevels(), frames), pilot.exposures_s, costs);
+    EYEBOX_ASSIGN_OR_RETURN(const DesignedLevels designed,
+                            DesignLevels(pilot, {}, fit::ErrorAtU::kDeparture, seconds / 3, costs,
+                                         list.UsualCalibrationFrames()));
     list.Add("designed levels", absl::StrFormat("in a third of the time of %d frames", frames),
-             [&](Setting& s, Need&) { s.levels = designed.levels; });
+             [&](Setting& s, Need&) {
+               s.levels = limits == nullptr ? designed.levels : MovedInto(*limits, designed.levels);
+             });
   }
   return absl::OkStatus();
 }
 
 }  // namespace
 
-absl::StatusOr<std::vector<TradeoffCase>> UsualCases(const Pilot& pilot, const Costs& costs) {
-  CaseList list(pilot.exposures_s.size());
+std::string WhyBeyond(const Stock& limits, const Setting& setting, const Need& need) {
+  const auto has = [](const std::vector<double>& values, double wanted) {
+    return std::ranges::any_of(values, [&](double v) { return v == wanted; });
+  };
+  for (const LevelFrames& level : setting.levels) {
+    if (!has(limits.drives, level.drive)) {
+      return absl::StrFormat("no level of drive %g was recorded", level.drive);
+    }
+    if (std::ranges::max(level.frames) > limits.frames) {
+      return absl::StrFormat("%d frames of a level are at hand", limits.frames);
+    }
+  }
+  if (setting.calibration_frames > limits.calibration_frames) {
+    return absl::StrFormat("%d darks and flats are at hand", limits.calibration_frames);
+  }
+  if (need.disk_deg > 0 && !has(limits.disks_deg, need.disk_deg)) {
+    return absl::StrFormat("no disk of %g deg was recorded", need.disk_deg);
+  }
+  if (setting.disk_frames > limits.disk_frames) {
+    return absl::StrFormat("%d frames of a disk are at hand", limits.disk_frames);
+  }
+  return "";
+}
+
+absl::StatusOr<std::vector<TradeoffCase>> UsualCases(const Pilot& pilot, const Costs& costs,
+                                                     const Stock* limits) {
+  CaseList list(pilot.exposures_s.size(), limits);
   AddCounts(list);
   AddExposures(list, pilot.exposures_s.size());
   AddModels(list);
   AddFields(list);
   AddGlare(list);
   AddTogether(list);
-  EYEBOX_RETURN_IF_ERROR(AddDesigned(pilot, costs, list));
+  EYEBOX_RETURN_IF_ERROR(AddDesigned(pilot, costs, limits, list));
   return list.Finish();
 }
 

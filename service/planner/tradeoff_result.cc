@@ -10,6 +10,7 @@
 #include "capture/base/file.h"
 #include "capture/base/status.h"
 #include "service/planner/explain_plan.h"
+#include "service/planner/recording_measurement.h"
 #include "service/planner/simulated_measurement.h"
 #include "service/report/front_figure.h"
 #include "service/result_json.h"
@@ -83,6 +84,26 @@ absl::Status WriteFiles(const std::filesystem::path& folder, v1::TradeoffResult&
   return WriteFileAtomically(folder / "tradeoff.json", json);
 }
 
+absl::StatusOr<SourceOfTrial> SimulatedSources(const capture::RigConfig& rig) {
+  constexpr std::string_view kScheme = "sim:";
+  if (!rig.camera_uri.starts_with(kScheme)) {
+    return BadInput(rig.camera_uri, "the truth of a rig that is not simulated is not known",
+                    "give a simulated rig, such as sim:rift-s-like, or a recording of your rig");
+  }
+  EYEBOX_ASSIGN_OR_RETURN(const capture::SimParameters parameters,
+                          capture::NamedSimParameters(rig.camera_uri.substr(kScheme.size())));
+  return [parameters, seed = rig.seed](int trial) {
+    return std::make_unique<SimulatedMeasurement>(parameters, seed + static_cast<uint64_t>(trial));
+  };
+}
+
+absl::StatusOr<SourceOfTrial> RecordedSources(const std::filesystem::path& recording) {
+  EYEBOX_ASSIGN_OR_RETURN(const auto frames, RecordedFrames::Read(recording));
+  return [frames](int trial) {
+    return std::make_unique<RecordingMeasurement>(frames, static_cast<uint64_t>(trial));
+  };
+}
+
 }  // namespace
 
 v1::TradeoffResult ToProto(const Tradeoff& tradeoff, const TradeoffOptions& options,
@@ -100,6 +121,7 @@ v1::TradeoffResult ToProto(const Tradeoff& tradeoff, const TradeoffOptions& opti
   result.set_median_disagreement(tradeoff.median_disagreement);
   result.set_trials(options.trials);
   result.set_source(source);
+  for (const std::string& what : tradeoff.left_out) result.add_warnings("left out: " + what);
   for (const DesignSaving& saving : SavingsByDesign(tradeoff, options.costs)) {
     v1::DesignSaving& line = *result.add_savings();
     line.set_design_s(saving.design_s);
@@ -133,21 +155,19 @@ std::string ToCsv(const v1::TradeoffResult& result) {
 
 absl::StatusOr<v1::TradeoffResult> RunTradeoff(const TradeoffRequest& request,
                                                const Watcher& watcher) {
-  constexpr std::string_view kScheme = "sim:";
-  const std::string& uri = request.rig.camera_uri;
-  if (!uri.starts_with(kScheme)) {
-    return BadInput(uri, "the truth of a rig that is not simulated is not known",
-                    "give a simulated rig, such as sim:rift-s-like");
-  }
-  EYEBOX_ASSIGN_OR_RETURN(const capture::SimParameters parameters,
-                          capture::NamedSimParameters(uri.substr(kScheme.size())));
-  const SourceOfTrial sources = [&](int trial) {
-    return std::make_unique<SimulatedMeasurement>(parameters,
-                                                  request.rig.seed + static_cast<uint64_t>(trial));
-  };
+  const bool recorded = !request.recording.empty();
+  EYEBOX_ASSIGN_OR_RETURN(const SourceOfTrial sources, recorded ? RecordedSources(request.recording)
+                                                                : SimulatedSources(request.rig));
   EYEBOX_ASSIGN_OR_RETURN(const Tradeoff tradeoff,
                           MeasureTradeoff(sources, request.options, *SystemClock(), watcher));
-  v1::TradeoffResult result = ToProto(tradeoff, request.options, uri);
+  v1::TradeoffResult result =
+      ToProto(tradeoff, request.options,
+              recorded ? request.recording.filename().string() : request.rig.camera_uri);
+  if (recorded) {
+    result.add_warnings(
+        "trials share the recording's frames, so errors common to all of them (the flat's "
+        "luminance, drift) are not seen, and the spread of trials is less than that of recordings");
+  }
   if (!request.out.empty()) EYEBOX_RETURN_IF_ERROR(WriteFiles(request.out, result));
   return result;
 }

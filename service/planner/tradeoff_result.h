@@ -13,13 +13,15 @@
 namespace eyebox::service {
 
 struct TradeoffRequest {
-  capture::RigConfig rig;     // a simulated one
+  capture::RigConfig rig;  // a simulated one
+  // Instead of it: half of a recording's frames are measured with, against the other half.
+  std::filesystem::path recording = {};
   std::filesystem::path out;  // folder of tradeoff.json, .csv and .svg; empty: none are written
   TradeoffOptions options;
 };
 
 // Errors: InvalidArgument (a rig that is not simulated: its truth is not known); those of
-// MeasureTradeoff; the errno of the disk.
+// RecordedFrames::Read and of MeasureTradeoff; the errno of the disk.
 absl::StatusOr<v1::TradeoffResult> RunTradeoff(const TradeoffRequest& request,
                                                const Watcher& watcher);
 

@@ -40,11 +40,15 @@ TEST(CliPlan, APlanIsCapturedAndRun) {
   EXPECT_LE(message.parameters(1).value(), 0.02);
   EXPECT_GT(message.parameters(3).value(), 0);
   bool colour_left_out = false;
+  bool single_precision = false;
   for (const v1::PlanDecision& decision : message.decisions()) {
     EXPECT_FALSE(decision.reason().empty());
     colour_left_out = colour_left_out || (decision.about() == "colour" && decision.left_out());
+    single_precision = single_precision ||
+                       (decision.about() == "precision" && decision.choice() == "single");
   }
   EXPECT_TRUE(colour_left_out);
+  EXPECT_TRUE(single_precision);
   const auto read = capture::ReadPlanFile(plan);
   ASSERT_TRUE(read.ok()) << read.status();
   EXPECT_EQ(static_cast<int>(read->captures.size()), message.captures());
@@ -55,6 +59,15 @@ TEST(CliPlan, APlanIsCapturedAndRun) {
   const Outcome run = RunEyebox("fit " + recording);
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("gamma"));
+}
+
+TEST(CliPlan, AToleranceThatSinglePrecisionCouldBreakIsRefused) {
+  const TemporaryFolder folder;
+  const std::string scene = WriteScene(folder, "within_deg: 10 diameter_deg: 8");
+  const Outcome refused = RunEyebox("plan --scene " + scene + " --tolerance 0.0009% sim:ideal");
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_THAT(refused.err, HasSubstr("--tolerance"));
+  EXPECT_THAT(refused.err, HasSubstr("0.001 %"));
 }
 
 TEST(CliPlan, WhatNeverVariesIsReadItself) {
@@ -83,7 +96,7 @@ TEST(CliPlan, WhatCannotBeKeptIsRefusedWithAnOffer) {
   EXPECT_THAT(tight.err, HasSubstr("a tolerance of 0.2 % is not kept within 1.5 s"));
   const Outcome device = RunEyebox("plan --scene " + scene + " v4l2:/dev/video9");
   EXPECT_NE(device.exit_code, 0);
-  EXPECT_THAT(device.err, HasSubstr("sim:rift-s-like"));
+  EXPECT_THAT(device.err, HasSubstr("--pilot PILOT"));
   const Outcome tolerance = RunEyebox("plan --scene " + scene + " --tolerance x sim:ideal");
   EXPECT_EQ(tolerance.exit_code, 3);
   EXPECT_THAT(tolerance.err, HasSubstr("--tolerance"));

@@ -61,8 +61,9 @@ absl::StatusOr<Findings> Measure(capture::RecordingReader& recording, const RunO
                           CalibrateCamera(recording, watcher.Part(0, 0.4), sensor));
   EYEBOX_RETURN_IF_ERROR(UseScale(options.scale, found.calibration));
   EYEBOX_ASSIGN_OR_RETURN(const KnownGlare glare, GlareOf(options.scatter, recording.Header()));
-  EYEBOX_ASSIGN_OR_RETURN(found.levels, ReduceGreyLevels(recording, series, found.calibration,
-                                                         watcher.Part(0.4, 0.8), glare));
+  EYEBOX_ASSIGN_OR_RETURN(
+      found.levels, ReduceGreyLevels(recording, series, found.calibration, watcher.Part(0.4, 0.8),
+                                     glare, {.clip_sigmas = options.clip_sigmas}));
   EYEBOX_RETURN_IF_ERROR(watcher.Reach(0.8, "uniformity map"));
   EYEBOX_ASSIGN_OR_RETURN(found.map,
                           optics::MeasureUniformity(found.levels.reference.reduced.luminance));
@@ -199,6 +200,10 @@ absl::Status ValidateOptions(const RunOptions& options) {
   if (options.pps_strip_size < 2 || options.pps_strip_size > 32) {
     return BadInput("pps_strip_size", absl::StrCat("is ", options.pps_strip_size),
                     "give 2 to 32 entries");
+  }
+  const double clip = options.clip_sigmas;
+  if (clip != 0 && !(clip >= 3 && clip <= 100)) {
+    return BadInput("clip_sigmas", absl::StrCat("is ", clip), "give 3 to 100, or 0 for none");
   }
   return absl::OkStatus();
 }

@@ -16,6 +16,7 @@ namespace eyebox::service {
 struct RunOptions {
   int hdrp_cube_size = 32;  // 2 to 129
   int pps_strip_size = 32;  // 2 to 32
+  double clip_sigmas = 0;   // 3 to 100: frames of a level so far off are left out; 0: none are
   // Of a rig that is captured: preflight.json, or the folder that holds it, to be kept beside the
   // recording. Without one the result is not certified.
   std::filesystem::path preflight = {};

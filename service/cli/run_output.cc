@@ -19,6 +19,10 @@ void RunOutput::AddTo(CLI::App& command, const std::string& default_out) {
   command.add_option("--pps-size", run.pps_strip_size, "Entries per axis of the strip PNG")
       ->check(CLI::Range(2, 32))
       ->capture_default_str();
+  command
+      .add_option("--clip", run.clip_sigmas,
+                  "Leave out frames this many sigmas off, 3 or more (default: none)")
+      ->check(CLI::Range(3.0, 100.0));
 }
 
 absl::Status RunOutput::Print(const absl::StatusOr<v1::RunResult>& result,

@@ -135,7 +135,8 @@ int LevelBlockPx(ImageSize size) {
 absl::StatusOr<MeasuredLevels> ReduceGreyLevels(capture::RecordingReader& recording,
                                                 const std::string& series,
                                                 const optics::Calibration& calibration,
-                                                const Watcher& watcher, const KnownGlare& glare) {
+                                                const Watcher& watcher, const KnownGlare& glare,
+                                                const BracketOptions& bracket) {
   EYEBOX_ASSIGN_OR_RETURN(const auto groups, GreyLevels(recording, series));
   EYEBOX_ASSIGN_OR_RETURN(const MeasuredDrift drift, MeasureDrift(recording));
   MeasuredLevels levels;
@@ -145,7 +146,7 @@ absl::StatusOr<MeasuredLevels> ReduceGreyLevels(capture::RecordingReader& record
     EYEBOX_RETURN_IF_ERROR(
         watcher.Reach(static_cast<double>(i) / static_cast<double>(groups.size()),
                       absl::StrFormat("luminance of %d levels", groups.size())));
-    auto reduced = ReduceCaptures(recording, groups[i], calibration);
+    auto reduced = ReduceCaptures(recording, groups[i], calibration, bracket);
     if (!reduced.ok()) return InLevel(groups[i], reduced.status());
     if (!IsUsable(*reduced)) {
       levels.warnings.push_back(WhyUnusable(groups[i], *reduced));

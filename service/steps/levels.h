@@ -69,7 +69,8 @@ absl::StatusOr<MeasuredLevels> ReduceGreyLevels(capture::RecordingReader& record
                                                 const std::string& series,
                                                 const optics::Calibration& calibration,
                                                 const Watcher& watcher,
-                                                const KnownGlare& glare = {});
+                                                const KnownGlare& glare = {},
+                                                const BracketOptions& bracket = {});
 
 }  // namespace eyebox::service
 

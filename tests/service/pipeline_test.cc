@@ -26,7 +26,9 @@
 namespace eyebox::service {
 namespace {
 
+using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
 
 v1::Parameter Named(const google::protobuf::RepeatedPtrField<v1::Parameter>& parameters,
                     const std::string& name) {
@@ -256,6 +258,25 @@ TEST_F(Pipeline, RefusesTableSizesBeforeItReads) {
       absl::IsInvalidArgument(RunRecording("nowhere", "out", {.hdrp_cube_size = 1}, {}).status()));
   EXPECT_TRUE(
       absl::IsInvalidArgument(RunRecording("nowhere", "out", {.pps_strip_size = 33}, {}).status()));
+}
+
+TEST_F(Pipeline, ClippingLeavesOutFramesThatAreOff) {
+  EXPECT_TRUE(
+      absl::IsInvalidArgument(RunRecording("nowhere", "out", {.clip_sigmas = 2}, {}).status()));
+  const TemporaryFolder folder;
+  const capture::RigConfig config{.name = "a", .camera_uri = "sim:rift-s-like", .seed = 1};
+  auto rig = capture::OpenRig(config, SystemClock());
+  ASSERT_TRUE(rig.ok());
+  const auto plan = *capture::MakeGreyPlan({.levels = 5, .exposures_s = {0.0125}, .repeats = 6});
+  const auto recording = folder.path() / "recording";
+  ASSERT_TRUE(RecordPlan(*rig, plan, recording, {}).ok());
+  const auto usual = RunRecording(recording, folder.path() / "usual", {}, {});
+  const auto clipped = RunRecording(recording, folder.path() / "clipped", {.clip_sigmas = 3}, {});
+  ASSERT_TRUE(usual.ok() && clipped.ok()) << usual.status() << clipped.status();
+  EXPECT_THAT(usual->reduction().history(), Not(Contains(HasSubstr("ClipStack"))));
+  EXPECT_THAT(clipped->reduction().history(), Contains(HasSubstr("ClipStack(3 sigma")));
+  EXPECT_NEAR(clipped->activation().parameters(3).value(),
+              usual->activation().parameters(3).value(), 0.01);
 }
 
 TEST_F(Pipeline, ARigIsCapturedWithItsTruthBesideIt) {

@@ -192,7 +192,8 @@ absl::StatusOr<Tradeoff> MeasureTradeoff(const SourceOfTrial& sources,
   const std::unique_ptr<FrameSource> source = sources(0);
   const Stock* const limits = source->Limits();
   EYEBOX_ASSIGN_OR_RETURN(tradeoff.pilot, MeasurePilot(*source, clock, PilotWithin(limits)));
-  EYEBOX_ASSIGN_OR_RETURN(auto cases, UsualCases(tradeoff.pilot, options.costs, limits));
+  EYEBOX_ASSIGN_OR_RETURN(auto cases,
+                          UsualCases(tradeoff.pilot, options.costs, limits, tradeoff.left_out));
   cases = Within(limits, std::move(cases), tradeoff.left_out);
   if (cases.empty() || cases[0].lever != "baseline") {
     return Rejected(

@@ -27,9 +27,11 @@ struct TradeoffCase {
 
 // Every lever by itself about a usual measurement, some of them together, and levels by design
 // beside evenly spaced ones of the same time. Where `limits` are given, a usual measurement within
-// them, and designed levels moved to the nearest there are. Errors: those of DesignLevels.
+// them, and designed levels moved to the nearest there are. A design for which the time is too
+// short goes to `left_out`, with the reason. Errors: those of DesignLevels.
 absl::StatusOr<std::vector<TradeoffCase>> UsualCases(const Pilot& pilot, const Costs& costs,
-                                                     const Stock* limits = nullptr);
+                                                     const Stock* limits,
+                                                     std::vector<std::string>& left_out);
 
 // Why a source with `limits` cannot give a setting; empty where it can.
 std::string WhyBeyond(const Stock& limits, const Setting& setting, const Need& need);

@@ -1,9 +1,13 @@
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
+#include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "capture/base/status.h"
+#include "fit/activation/activation_problem.h"
 #include "service/planner/design_levels.h"
 #include "service/planner/tradeoff.h"
 
@@ -180,17 +184,22 @@ std::vector<LevelFrames> MovedInto(const Stock& limits, const std::vector<LevelF
 }
 
 absl::Status AddDesigned(const Pilot& pilot, const Costs& costs, const Stock* limits,
-                         CaseList& list) {
+                         CaseList& list, std::vector<std::string>& left_out) {
   for (const int frames : {1, 2, 4, 8, 16}) {
+    const std::string name = absl::StrFormat("in a third of the time of %d frames", frames);
     const double seconds =
         LevelSeconds(list.Even(list.UsualLevels(), frames), pilot.exposures_s, costs);
-    EYEBOX_ASSIGN_OR_RETURN(const DesignedLevels designed,
-                            DesignLevels(pilot, {}, fit::ErrorAtU::kDeparture, seconds / 3, costs,
-                                         list.UsualCalibrationFrames()));
-    list.Add("designed levels", absl::StrFormat("in a third of the time of %d frames", frames),
-             [&](Setting& s, Need&) {
-               s.levels = limits == nullptr ? designed.levels : MovedInto(*limits, designed.levels);
-             });
+    const auto designed = DesignLevels(pilot, {}, fit::ErrorAtU::kDeparture, seconds / 3, costs,
+                                       list.UsualCalibrationFrames());
+    if (absl::IsFailedPrecondition(designed.status())) {
+      left_out.push_back(
+          absl::StrCat("designed levels, ", name, ": ", designed.status().message()));
+      continue;
+    }
+    EYEBOX_RETURN_IF_ERROR(designed.status());
+    list.Add("designed levels", name, [&](Setting& s, Need&) {
+      s.levels = limits == nullptr ? designed->levels : MovedInto(*limits, designed->levels);
+    });
   }
   return absl::OkStatus();
 }
@@ -209,6 +218,10 @@ std::string WhyBeyond(const Stock& limits, const Setting& setting, const Need& n
       return absl::StrFormat("%d frames of a level are at hand", limits.frames);
     }
   }
+  const size_t fewest = fit::ActivationProblem{setting.model, {}}.FewestDrives();
+  if (setting.levels.size() < fewest) {
+    return absl::StrFormat("its model needs %d levels", fewest);
+  }
   if (setting.calibration_frames > limits.calibration_frames) {
     return absl::StrFormat("%d darks and flats are at hand", limits.calibration_frames);
   }
@@ -222,7 +235,8 @@ std::string WhyBeyond(const Stock& limits, const Setting& setting, const Need& n
 }
 
 absl::StatusOr<std::vector<TradeoffCase>> UsualCases(const Pilot& pilot, const Costs& costs,
-                                                     const Stock* limits) {
+                                                     const Stock* limits,
+                                                     std::vector<std::string>& left_out) {
   CaseList list(pilot.exposures_s.size(), limits);
   AddCounts(list);
   AddExposures(list, pilot.exposures_s.size());
@@ -230,7 +244,7 @@ absl::StatusOr<std::vector<TradeoffCase>> UsualCases(const Pilot& pilot, const C
   AddFields(list);
   AddGlare(list);
   AddTogether(list);
-  EYEBOX_RETURN_IF_ERROR(AddDesigned(pilot, costs, limits, list));
+  EYEBOX_RETURN_IF_ERROR(AddDesigned(pilot, costs, limits, list, left_out));
   return list.Finish();
 }
 

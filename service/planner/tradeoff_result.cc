@@ -160,9 +160,9 @@ absl::StatusOr<v1::TradeoffResult> RunTradeoff(const TradeoffRequest& request,
                                                                 : SimulatedSources(request.rig));
   EYEBOX_ASSIGN_OR_RETURN(const Tradeoff tradeoff,
                           MeasureTradeoff(sources, request.options, *SystemClock(), watcher));
-  v1::TradeoffResult result =
-      ToProto(tradeoff, request.options,
-              recorded ? request.recording.filename().string() : request.rig.camera_uri);
+  std::string source = recorded ? request.recording_name : request.rig.camera_uri;
+  if (source.empty()) source = request.recording.filename().string();
+  v1::TradeoffResult result = ToProto(tradeoff, request.options, source);
   if (recorded) {
     result.add_warnings(
         "trials share the recording's frames, so errors common to all of them (the flat's "

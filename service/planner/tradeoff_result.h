@@ -16,6 +16,7 @@ struct TradeoffRequest {
   capture::RigConfig rig;  // a simulated one
   // Instead of it: half of a recording's frames are measured with, against the other half.
   std::filesystem::path recording = {};
+  std::string recording_name = {};  // in the result; empty: the name of its folder
   std::filesystem::path out;  // folder of tradeoff.json, .csv and .svg; empty: none are written
   TradeoffOptions options;
 };

@@ -18,6 +18,7 @@ RunOptions OptionsOf(const v1::CreateRunRequest& request) {
   RunOptions options;
   if (request.hdrp_cube_size() != 0) options.hdrp_cube_size = request.hdrp_cube_size();
   if (request.pps_strip_size() != 0) options.pps_strip_size = request.pps_strip_size();
+  options.clip_sigmas = request.clip_sigmas();
   return options;
 }
 

@@ -10,10 +10,14 @@
 #include "absl/strings/str_replace.h"
 #include "capture/base/file.h"
 #include "capture/base/status.h"
+#include "service/planner/plan_measurement.h"
+#include "service/planner/tradeoff_result.h"
 #include "service/predict_rows.h"
 #include "service/result_json.h"
 #include "service/results/characterize.h"
 #include "service/scatter.h"
+#include "service/scene/read_scene.h"
+#include "service/server/store/rigs.h"
 #include "service/single_steps.h"
 #include "service/steps/characterize.h"
 #include "service/verify.h"
@@ -66,6 +70,10 @@ class Verb {
         return Judge(request.verify());
       case v1::CreateJobRequest::kPredict:
         return Predict(request.predict());
+      case v1::CreateJobRequest::kTradeoff:
+        return PriceLevers(request.tradeoff());
+      case v1::CreateJobRequest::kPlan:
+        return Plan(request.plan());
       default:
         return absl::InternalError(Complaint("work", "is none that is known here",
                                              "report this as a fault of the program"));
@@ -157,6 +165,47 @@ class Verb {
     request.published = work.published();
     request.out = out_ / "predicted.csv";
     return Write(PredictRows(request));
+  }
+
+  absl::Status PriceLevers(const v1::TradeoffWork& work) {
+    TradeoffRequest request;
+    if (work.has_recording()) {
+      EYEBOX_ASSIGN_OR_RETURN(request.recording, OpenFolder(work.recording()));
+      request.recording_name = work.recording();
+    } else {
+      request.rig = ConfigOf(work.simulated());
+    }
+    if (work.trials() != 0) request.options.trials = work.trials();
+    request.options.costs = CostsOf(work.costs());
+    request.out = out_;
+    return Write(RunTradeoff(request, watcher_));
+  }
+
+  absl::Status Plan(const v1::PlanWork& work) {
+    PlanRequest request;
+    EYEBOX_ASSIGN_OR_RETURN(request.scene, OpenFile(work.scene()));
+    EYEBOX_ASSIGN_OR_RETURN(const SceneInput scene, ReadScene(request.scene));
+    if (!scene.cube.empty()) {
+      return BadInput(work.scene(), "it names a cube_file, and no path of a client is followed",
+                      "plan with the command line, or leave the cube out");
+    }
+    if (work.has_recording()) {
+      EYEBOX_ASSIGN_OR_RETURN(request.pilot, OpenFolder(work.recording()));
+    } else {
+      request.rig = ConfigOf(work.simulated());
+    }
+    if (work.tolerance() != 0) request.tolerance = work.tolerance();
+    if (work.has_budget_s()) request.budget_s = work.budget_s();
+    request.costs = CostsOf(work.costs());
+    request.out = out_ / "plan.textproto";
+    return Write(PlanMeasurement(request, watcher_));
+  }
+
+  static Costs CostsOf(const v1::CaptureCosts& asked) {
+    Costs costs;
+    if (asked.has_stimulus_s()) costs.stimulus_s = asked.stimulus_s();
+    if (asked.has_frame_s()) costs.frame_s = asked.frame_s();
+    return costs;
   }
 
   absl::StatusOr<SeriesChoice> Choose(const v1::SeriesSource& source) {

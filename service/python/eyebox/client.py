@@ -212,16 +212,17 @@ class Client:
             capture_service_pb2_grpc.CaptureServiceStub(channel)) for name in vars(stub)}
 
     def run(self, recording: Optional[str] = None, rig: Optional[str] = None, *, seed: int = 1,
-            hdrp_cube_size: int = 0, pps_strip_size: int = 0,
+            hdrp_cube_size: int = 0, pps_strip_size: int = 0, clip_sigmas: float = 0,
             request_id: Optional[str] = None) -> Job:
         """Creates a run of a recording (its path below the server's data folder) or of a rig
         ("sim:NAME"). A script that may be started again gives a request_id of its own: the same
-        one gives the same job. Sizes of 0 are the server's defaults.
+        one gives the same job. Sizes of 0 are the server's defaults; clip_sigmas leaves out frames
+        that far off, 0 none.
         Raises InvalidRequest, NotFound, AlreadyExists, QueueFull, ServerUnavailable.
         """
         request = service_pb2.CreateRunRequest(
             request_id=request_id or uuid.uuid4().hex, hdrp_cube_size=hdrp_cube_size,
-            pps_strip_size=pps_strip_size)
+            pps_strip_size=pps_strip_size, clip_sigmas=clip_sigmas)
         if (recording is None) == (rig is None):
             raise ValueError("give either a recording or a rig")
         if recording is not None:

@@ -17,6 +17,7 @@ constexpr NameRule kNewRecordingRule = {
     "a new recording", "", 1, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-"};
 constexpr int kMostPredictions = 1000;
 constexpr double kLongestTimeoutS = 86400;
+constexpr double kLongestCostS = 3600;
 
 // A path below the served folder that a request names.
 struct Source {
@@ -59,6 +60,16 @@ std::vector<Source> SourcesOf(const v1::CreateJobRequest& request) {
       }
       return sources;
     }
+    case v1::CreateJobRequest::kTradeoff:
+      if (!request.tradeoff().has_recording()) return {};
+      return {{"tradeoff.recording", request.tradeoff().recording(), true}};
+    case v1::CreateJobRequest::kPlan: {
+      std::vector<Source> sources = {{"plan.scene", request.plan().scene(), false}};
+      if (request.plan().has_recording()) {
+        sources.push_back({"plan.recording", request.plan().recording(), true});
+      }
+      return sources;
+    }
     default:
       return {};
   }
@@ -93,13 +104,48 @@ absl::Status ValidateCapture(const v1::CaptureWork& work) {
   return absl::OkStatus();
 }
 
+absl::Status ValidateCosts(const std::string& field, const v1::CaptureCosts& costs) {
+  const auto refuse = [&](const char* name, double value) {
+    return BadField(field + "." + name, "is " + std::to_string(value), "give 0 to 3600");
+  };
+  const auto makes_sense = [](double seconds) { return seconds >= 0 && seconds <= kLongestCostS; };
+  if (!makes_sense(costs.stimulus_s())) return refuse("stimulus_s", costs.stimulus_s());
+  if (!makes_sense(costs.frame_s())) return refuse("frame_s", costs.frame_s());
+  return absl::OkStatus();
+}
+
+absl::Status ValidateTradeoff(const v1::TradeoffWork& work) {
+  if (work.source_case() == v1::TradeoffWork::SOURCE_NOT_SET) {
+    return BadField("tradeoff.source", "is missing", "give a simulated rig or a recording");
+  }
+  if (work.has_simulated()) EYEBOX_RETURN_IF_ERROR(ValidateRig(work.simulated()));
+  if (work.trials() != 0 && (work.trials() < 2 || work.trials() > 1000)) {
+    return BadField("tradeoff.trials", "is " + std::to_string(work.trials()),
+                    "give 2 to 1000, or 0 for 24");
+  }
+  return ValidateCosts("tradeoff.costs", work.costs());
+}
+
+absl::Status ValidatePlan(const v1::PlanWork& work) {
+  if (work.pilot_case() == v1::PlanWork::PILOT_NOT_SET) {
+    return BadField("plan.pilot", "is missing", "give a simulated rig or a recording");
+  }
+  if (work.has_simulated()) EYEBOX_RETURN_IF_ERROR(ValidateRig(work.simulated()));
+  if (!(work.tolerance() >= 0 && work.tolerance() < 1)) {
+    return BadField("plan.tolerance", "is " + std::to_string(work.tolerance()),
+                    "give a share above 0 and below 1, or 0 for 0.02");
+  }
+  if (work.has_budget_s() && !(work.budget_s() > 0)) {
+    return BadField("plan.budget_s", "is " + std::to_string(work.budget_s()),
+                    "give a time above 0, or leave it out");
+  }
+  return ValidateCosts("plan.costs", work.costs());
+}
+
 absl::Status ValidateValues(const v1::CreateJobRequest& request) {
   switch (request.work_case()) {
-    case v1::CreateJobRequest::kReduce: {
-      const double clip = request.reduce().clip_sigmas();
-      if (clip == 0 || (clip >= 3 && clip <= 100)) return absl::OkStatus();
-      return BadField("reduce.clip_sigmas", "is " + std::to_string(clip), "give 0, or 3 to 100");
-    }
+    case v1::CreateJobRequest::kReduce:
+      return ValidateClip("reduce.clip_sigmas", request.reduce().clip_sigmas());
     case v1::CreateJobRequest::kCube:
       if (request.cube().size() != 0 &&
           (request.cube().size() < 2 || request.cube().size() > 256)) {
@@ -116,6 +162,10 @@ absl::Status ValidateValues(const v1::CreateJobRequest& request) {
       return OneOf("predict.material", request.predict().material(), {"unlit", "lambertian"});
     case v1::CreateJobRequest::kCapture:
       return ValidateCapture(request.capture());
+    case v1::CreateJobRequest::kTradeoff:
+      return ValidateTradeoff(request.tradeoff());
+    case v1::CreateJobRequest::kPlan:
+      return ValidatePlan(request.plan());
     default:
       return absl::OkStatus();
   }

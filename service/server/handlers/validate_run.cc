@@ -59,6 +59,11 @@ absl::Status ValidateRig(const v1::Rig& rig) {
   return absl::OkStatus();
 }
 
+absl::Status ValidateClip(const std::string& field, double sigmas) {
+  if (sigmas == 0 || (sigmas >= 3 && sigmas <= 100)) return absl::OkStatus();
+  return BadField(field, "is " + std::to_string(sigmas), "give 0, or 3 to 100");
+}
+
 absl::Status ValidateRun(const v1::CreateRunRequest& request) {
   EYEBOX_RETURN_IF_ERROR(CheckName(kRequestIdRule, "request_id", request.request_id()).status());
   return ValidateRunWork(request);
@@ -73,7 +78,7 @@ absl::Status ValidateRunWork(const v1::CreateRunRequest& request) {
                     "give " + std::to_string(rule.min) + " to " + std::to_string(rule.max) +
                         ", or 0 for the default");
   }
-  return absl::OkStatus();
+  return ValidateClip("clip_sigmas", request.clip_sigmas());
 }
 
 }  // namespace eyebox::service

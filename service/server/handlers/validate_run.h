@@ -2,6 +2,8 @@
 #ifndef EYEBOX_SERVICE_SERVER_HANDLERS_VALIDATE_RUN_H_
 #define EYEBOX_SERVICE_SERVER_HANDLERS_VALIDATE_RUN_H_
 
+#include <string>
+
 #include "absl/status/status.h"
 #include "eyebox/v1/service.pb.h"
 
@@ -11,6 +13,8 @@ namespace eyebox::service {
 absl::Status ValidateRun(const v1::CreateRunRequest& request);
 // The same but for the request_id.
 absl::Status ValidateRunWork(const v1::CreateRunRequest& request);
+// 0, or 3 to 100.
+absl::Status ValidateClip(const std::string& field, double sigmas);
 // A simulated rig.
 absl::Status ValidateRig(const v1::Rig& rig);
 

@@ -44,8 +44,8 @@ TEST(CliPlan, APlanIsCapturedAndRun) {
   for (const v1::PlanDecision& decision : message.decisions()) {
     EXPECT_FALSE(decision.reason().empty());
     colour_left_out = colour_left_out || (decision.about() == "colour" && decision.left_out());
-    single_precision = single_precision ||
-                       (decision.about() == "precision" && decision.choice() == "single");
+    single_precision =
+        single_precision || (decision.about() == "precision" && decision.choice() == "single");
   }
   EXPECT_TRUE(colour_left_out);
   EXPECT_TRUE(single_precision);

@@ -4,6 +4,7 @@
 """
 
 import filecmp
+import json
 import os
 import re
 import shutil
@@ -186,6 +187,57 @@ class PythonClientTest(unittest.TestCase):
             self.client.run(recording="missing")
         with self.assertRaises(eyebox.NotFound):
             self.client.job("jobs/999999")
+
+    def test_plans_and_prices_are_those_of_the_command_line(self):
+        scenes = PACKAGE.parents[1] / "fixtures/scenes/requirements"
+        shutil.copy(scenes / "01-grey-patch-central.textproto", self.folder / "data/scene.textproto")
+        sim = {"name": "rift-s-like", "camera_uri": "sim:rift-s-like", "seed": 1}
+        planned = self.client.create(plan={"scene": "scene.textproto", "simulated": sim,
+                                           "tolerance": 0.02}, request_id="plan")
+        files = planned.download_all(self.folder / "planned")
+        self.assertEqual(sorted(path.name for path in files), ["plan.textproto", "result.json"])
+        done = run(EYEBOX, "plan", "--scene", self.folder / "data/scene.textproto", "--tolerance",
+                   "2%", "sim:rift-s-like", "--out", self.folder / "by-hand.textproto")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual((self.folder / "planned/plan.textproto").read_bytes(),
+                         (self.folder / "by-hand.textproto").read_bytes())
+        self.assertIn('"plan.textproto"', (self.folder / "planned/result.json").read_text())
+        priced = self.client.create(tradeoff={"recording": "rec", "trials": 2}, request_id="prices")
+        files = priced.download_all(self.folder / "priced")
+        self.assertEqual(sorted(path.name for path in files),
+                         ["result.json", "tradeoff.csv", "tradeoff.json", "tradeoff.svg"])
+        self.assertIn("baseline,", (self.folder / "priced/tradeoff.csv").read_text())
+        self.assertEqual(json.loads((self.folder / "priced/result.json").read_text())["source"],
+                         "rec")
+
+    def test_plans_and_prices_that_make_no_sense_are_refused_by_field(self):
+        sim = {"name": "rift-s-like", "camera_uri": "sim:rift-s-like", "seed": 1}
+        plan = {"scene": "scene.textproto", "simulated": sim}
+        for verb, work, where in (
+                ("tradeoff", {}, "tradeoff.source"),
+                ("tradeoff", {"simulated": sim, "trials": 1}, "tradeoff.trials"),
+                ("tradeoff", {"simulated": sim, "costs": {"frame_s": -1}},
+                 "tradeoff.costs.frame_s"),
+                ("tradeoff", {"recording": "../rec"}, "tradeoff.recording"),
+                ("plan", {"scene": "scene.textproto"}, "plan.pilot"),
+                ("plan", {**plan, "scene": "/etc/passwd"}, "plan.scene"),
+                ("plan", {**plan, "tolerance": 1.0}, "plan.tolerance"),
+                ("plan", {**plan, "budget_s": float("nan")}, "plan.budget_s"),
+                ("plan", {**plan, "costs": {"stimulus_s": float("inf")}},
+                 "plan.costs.stimulus_s")):
+            with self.subTest(where), self.assertRaises(eyebox.InvalidRequest) as caught:
+                self.client.create(**{verb: work})
+            self.assertEqual(caught.exception.where, where)
+        with self.assertRaises(eyebox.InvalidRequest) as caught:
+            self.client.run(recording="rec", clip_sigmas=2)
+        self.assertEqual(caught.exception.where, "clip_sigmas")
+        (self.folder / "data/cube.textproto").write_text('cube_file: "x.cube"\n' + (
+            PACKAGE.parents[1] / "fixtures/scenes/requirements/01-grey-patch-central.textproto"
+        ).read_text())
+        job = self.client.create(plan={**plan, "scene": "cube.textproto"})
+        with self.assertRaises(eyebox.JobFailed) as caught:
+            job.result()
+        self.assertIn("cube_file", str(caught.exception))
 
     def test_failed_job_says_what_was_wrong_with_the_recording(self):
         (self.folder / "data" / "empty").mkdir(exist_ok=True)

@@ -1,5 +1,6 @@
 #include <signal.h>
 
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -49,10 +50,13 @@ void AddAccessOptions(CLI::App& command, AccessOptions& access) {
 struct ServeOptions {
   ServerOptions server;
   double min_free_gb = 1;
+  double stalled_after_s = 60;
 };
 
 absl::Status Serve(const ServeOptions& asked) {
   ServerOptions options = asked.server;
+  options.stalled_after =
+      std::chrono::milliseconds(static_cast<int64_t>(1000 * asked.stalled_after_s));
   options.health.min_free_bytes = static_cast<uint64_t>(asked.min_free_gb * kBytesPerGb);
   options.log = std::make_shared<ServerLog>();
   const sigset_t signals = BlockStopSignals();
@@ -108,6 +112,11 @@ void AddServe(CLI::App& app, Work& work) {
         AddAccessOptions(command, options.server.access);
         command.add_option("--metrics", options.server.metrics,
                            "127.0.0.1:PORT where Prometheus may read figures (default: nowhere)");
+        command
+            .add_option("--stalled-after", options.stalled_after_s,
+                        "Seconds after which a client that reads nothing of a stream loses it")
+            ->check(CLI::Range(1.0, 86400.0))
+            ->capture_default_str();
         command
             .add_option("--min-free-gb", options.min_free_gb,
                         "Health says NOT_SERVING while a disk has less than this left")

@@ -43,8 +43,8 @@ class RecordingServiceImpl final : public v1::RecordingService::CallbackService 
     return service::ReadArray(context_, call, request, response);
   }
   grpc::ServerWriteReactor<v1::ArrayChunk>* StreamArray(
-      grpc::CallbackServerContext* /*call*/, const v1::ReadArrayRequest* request) override {
-    return service::StreamArray(context_, request);
+      grpc::CallbackServerContext* call, const v1::ReadArrayRequest* request) override {
+    return service::StreamArray(context_, call, request);
   }
 
  private:

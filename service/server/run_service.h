@@ -26,9 +26,9 @@ class RunServiceImpl final : public v1::RunService::CallbackService {
                                      v1::ListJobsResponse* response) override {
     return service::ListJobs(context_, call, request, response);
   }
-  grpc::ServerWriteReactor<v1::JobEvent>* WatchJob(grpc::CallbackServerContext* /*call*/,
+  grpc::ServerWriteReactor<v1::JobEvent>* WatchJob(grpc::CallbackServerContext* call,
                                                    const v1::WatchJobRequest* request) override {
-    return service::WatchJob(context_, request);
+    return service::WatchJob(context_, call, request);
   }
   grpc::ServerUnaryReactor* WaitJob(grpc::CallbackServerContext* /*call*/,
                                     const v1::WaitJobRequest* request, v1::Job* response) override {
@@ -45,8 +45,8 @@ class RunServiceImpl final : public v1::RunService::CallbackService {
     return service::GetRunResult(context_, call, request, response);
   }
   grpc::ServerWriteReactor<v1::ArtifactChunk>* DownloadArtifact(
-      grpc::CallbackServerContext* /*call*/, const v1::DownloadArtifactRequest* request) override {
-    return service::DownloadArtifact(context_, request);
+      grpc::CallbackServerContext* call, const v1::DownloadArtifactRequest* request) override {
+    return service::DownloadArtifact(context_, call, request);
   }
   grpc::ServerUnaryReactor* ReadArtifact(grpc::CallbackServerContext* call,
                                          const v1::ReadArtifactRequest* request,

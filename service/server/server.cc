@@ -145,7 +145,8 @@ class GrpcServer final : public Server {
   Catalogue catalogue_{options_.state, &recordings_, clock_,
                        [this](const std::string& what) { TellOfCatalogue(what); }};
   Executor catalogue_thread_{1};
-  const HandlerContext context_ = {*jobs_, disk_, recordings_, catalogue_, catalogue_thread_};
+  const HandlerContext context_ = {
+      *jobs_, disk_, recordings_, catalogue_, catalogue_thread_, options_.stalled_after};
   RunServiceImpl service_{context_};
   JobServiceImpl job_service_{context_};
   CaptureServiceImpl capture_service_{context_};

@@ -2,6 +2,7 @@
 #ifndef EYEBOX_SERVICE_SERVER_SERVER_H_
 #define EYEBOX_SERVICE_SERVER_SERVER_H_
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -23,6 +24,8 @@ struct ServerOptions {
   AccessOptions access = {};  // TCP is served with all of its TLS files only
   std::string metrics = "";   // 127.0.0.1:PORT for Prometheus; empty: nowhere
   HealthOptions health = {};
+  // A client that has taken nothing of a stream for so long, or twice as long at most, loses it.
+  std::chrono::milliseconds stalled_after{60'000};
   std::shared_ptr<ServerLog> log = nullptr;  // none: nothing is logged
 };
 

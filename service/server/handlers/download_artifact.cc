@@ -3,6 +3,7 @@
 #include "capture/base/status.h"
 #include "service/server/handlers/handlers.h"
 #include "service/server/handlers/result_files.h"
+#include "service/server/handlers/stall_guard.h"
 #include "service/server/rpc_status.h"
 
 namespace eyebox::service {
@@ -12,12 +13,14 @@ namespace {
 // read costs one chunk of memory and no thread. One step at a time, so it needs no lock.
 class DownloadCall final : public grpc::ServerWriteReactor<v1::ArtifactChunk> {
  public:
-  DownloadCall(const HandlerContext& context, const v1::DownloadArtifactRequest* request)
-      : context_(context), request_(*request) {
+  DownloadCall(const HandlerContext& context, grpc::CallbackServerContext* call,
+               const v1::DownloadArtifactRequest* request)
+      : context_(context), request_(*request), guard_(call, context.stalled_after) {
     context_.disk.Post([this] { WriteNext(); });
   }
 
   void OnWriteDone(bool ok) override {
+    guard_.WriteEnds();
     if (!ok) {
       Finish(grpc::Status(grpc::StatusCode::CANCELLED, "the client went away"));
       return;
@@ -30,9 +33,9 @@ class DownloadCall final : public grpc::ServerWriteReactor<v1::ArtifactChunk> {
  private:
   void WriteNext() {
     const absl::Status read = ReadNext();
-    if (!read.ok()) {
-      Finish(ToRpcStatus(read));
-    } else if (next_ < chunk_.total_bytes()) {
+    if (!read.ok()) return Finish(ToRpcStatus(read));
+    guard_.WriteBegins();
+    if (next_ < chunk_.total_bytes()) {
       StartWrite(&chunk_);
     } else {
       StartWriteAndFinish(&chunk_, {}, grpc::Status::OK);
@@ -54,13 +57,15 @@ class DownloadCall final : public grpc::ServerWriteReactor<v1::ArtifactChunk> {
   std::optional<ResultFile> file_;
   v1::ArtifactChunk chunk_;  // being written
   uint64_t next_ = 0;
+  StallGuard guard_;
 };
 
 }  // namespace
 
 grpc::ServerWriteReactor<v1::ArtifactChunk>* DownloadArtifact(
-    const HandlerContext& context, const v1::DownloadArtifactRequest* request) {
-  return new DownloadCall(context, request);
+    const HandlerContext& context, grpc::CallbackServerContext* call,
+    const v1::DownloadArtifactRequest* request) {
+  return new DownloadCall(context, call, request);
 }
 
 }  // namespace eyebox::service

@@ -24,6 +24,7 @@ grpc::ServerUnaryReactor* ListJobs(const HandlerContext& context, grpc::Callback
                                    const v1::ListJobsRequest* request,
                                    v1::ListJobsResponse* response);
 grpc::ServerWriteReactor<v1::JobEvent>* WatchJob(const HandlerContext& context,
+                                                 grpc::CallbackServerContext* call,
                                                  const v1::WatchJobRequest* request);
 grpc::ServerUnaryReactor* WaitJob(const HandlerContext& context, const v1::WaitJobRequest* request,
                                   v1::Job* response);
@@ -35,7 +36,8 @@ grpc::ServerUnaryReactor* GetRunResult(const HandlerContext& context,
                                        const v1::GetRunResultRequest* request,
                                        v1::RunResult* response);
 grpc::ServerWriteReactor<v1::ArtifactChunk>* DownloadArtifact(
-    const HandlerContext& context, const v1::DownloadArtifactRequest* request);
+    const HandlerContext& context, grpc::CallbackServerContext* call,
+    const v1::DownloadArtifactRequest* request);
 grpc::ServerUnaryReactor* ReadArtifact(const HandlerContext& context,
                                        grpc::CallbackServerContext* call,
                                        const v1::ReadArtifactRequest* request,
@@ -81,6 +83,7 @@ grpc::ServerUnaryReactor* ReadArray(const HandlerContext& context,
                                     grpc::CallbackServerContext* call,
                                     const v1::ReadArrayRequest* request, v1::ArrayChunk* response);
 grpc::ServerWriteReactor<v1::ArrayChunk>* StreamArray(const HandlerContext& context,
+                                                      grpc::CallbackServerContext* call,
                                                       const v1::ReadArrayRequest* request);
 
 }  // namespace eyebox::service

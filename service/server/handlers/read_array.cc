@@ -16,6 +16,7 @@
 #include "service/server/handlers/handlers.h"
 #include "service/server/handlers/reply.h"
 #include "service/server/handlers/result_files.h"
+#include "service/server/handlers/stall_guard.h"
 #include "service/server/store/served.h"
 
 namespace eyebox::service {
@@ -115,8 +116,12 @@ absl::StatusOr<v1::ArrayChunk> ReadChunk(const HandlerContext& context,
 // As DownloadCall: one chunk is written at a time, and no thread waits for a slow client.
 class ArrayCall final : public grpc::ServerWriteReactor<v1::ArrayChunk> {
  public:
-  ArrayCall(const HandlerContext& context, const v1::ReadArrayRequest& request)
-      : context_(context), request_(request), next_(request.offset()) {
+  ArrayCall(const HandlerContext& context, grpc::CallbackServerContext* call,
+            const v1::ReadArrayRequest& request)
+      : context_(context),
+        request_(request),
+        next_(request.offset()),
+        guard_(call, context.stalled_after) {
     context_.disk.Post([this] { Begin(); });
   }
 
@@ -126,6 +131,7 @@ class ArrayCall final : public grpc::ServerWriteReactor<v1::ArrayChunk> {
   }
 
   void OnWriteDone(bool ok) override {
+    guard_.WriteEnds();
     if (ok) return WriteNext();
     Finish(grpc::Status(grpc::StatusCode::CANCELLED, "the client went away"));
   }
@@ -145,6 +151,7 @@ class ArrayCall final : public grpc::ServerWriteReactor<v1::ArrayChunk> {
   void WriteNext() {
     chunk_ = ChunkOf(array_, next_);
     next_ += chunk_.data().size();
+    guard_.WriteBegins();
     if (next_ < array_.bytes.size()) {
       StartWrite(&chunk_);
     } else {
@@ -157,6 +164,7 @@ class ArrayCall final : public grpc::ServerWriteReactor<v1::ArrayChunk> {
   Array array_;
   v1::ArrayChunk chunk_;  // being written
   uint64_t next_;
+  StallGuard guard_;
 };
 
 }  // namespace
@@ -172,13 +180,14 @@ grpc::ServerUnaryReactor* ReadArray(const HandlerContext& context,
 }
 
 grpc::ServerWriteReactor<v1::ArrayChunk>* StreamArray(const HandlerContext& context,
+                                                      grpc::CallbackServerContext* call,
                                                       const v1::ReadArrayRequest* request) {
   if (++ArrayCall::Count() > kMostStreams) {
     --ArrayCall::Count();
     return new FailedStream<v1::ArrayChunk>(absl::ResourceExhaustedError(
         Complaint("StreamArray", "8 arrays are being read already", "ask again in a moment")));
   }
-  return new ArrayCall(context, *request);
+  return new ArrayCall(context, call, *request);
 }
 
 }  // namespace eyebox::service

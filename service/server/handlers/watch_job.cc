@@ -5,6 +5,7 @@
 #include "capture/base/status.h"
 #include "service/server/handlers/failed_stream.h"
 #include "service/server/handlers/handlers.h"
+#include "service/server/handlers/stall_guard.h"
 #include "service/server/rpc_status.h"
 #include "service/server/store/names.h"
 
@@ -16,8 +17,11 @@ namespace {
 class WatchCall final : public grpc::ServerWriteReactor<v1::JobEvent>,
                         public std::enable_shared_from_this<WatchCall> {
  public:
-  WatchCall(Jobs& jobs, int64_t number, uint32_t from)
-      : jobs_(jobs), number_(number), next_(from) {}
+  WatchCall(const HandlerContext& context, grpc::CallbackServerContext* call, int64_t number,
+            uint32_t from)
+      : jobs_(context.jobs), number_(number), next_(from) {
+    guard_.emplace(call, context.stalled_after);
+  }
 
   absl::Status Start() {
     self_ = shared_from_this();
@@ -32,6 +36,7 @@ class WatchCall final : public grpc::ServerWriteReactor<v1::JobEvent>,
   }
 
   void OnWriteDone(bool ok) override {
+    guard_->WriteEnds();
     {
       const std::lock_guard lock(mutex_);
       writing_ = false;
@@ -49,6 +54,7 @@ class WatchCall final : public grpc::ServerWriteReactor<v1::JobEvent>,
   }
 
   void OnDone() override {
+    guard_.reset();  // a listener may keep this a moment longer than the call lives
     jobs_.table().RemoveListener(number_, listener_);
     self_.reset();
   }
@@ -68,6 +74,7 @@ class WatchCall final : public grpc::ServerWriteReactor<v1::JobEvent>,
     if (end) {
       Finish(*end);
     } else {
+      guard_->WriteBegins();
       StartWrite(&event_);
     }
   }
@@ -91,6 +98,7 @@ class WatchCall final : public grpc::ServerWriteReactor<v1::JobEvent>,
 
   Jobs& jobs_;
   const int64_t number_;
+  std::optional<StallGuard> guard_;
   uint64_t listener_ = 0;
   std::shared_ptr<WatchCall> self_;  // until gRPC is done with the call
 
@@ -113,21 +121,23 @@ absl::Status CheckFrom(JobTable& table, int64_t number, uint32_t from) {
 }
 
 absl::StatusOr<grpc::ServerWriteReactor<v1::JobEvent>*> Watch(const HandlerContext& context,
+                                                              grpc::CallbackServerContext* call,
                                                               const v1::WatchJobRequest& request) {
   EYEBOX_ASSIGN_OR_RETURN(const int64_t number, JobNumber("name", request.name()));
   EYEBOX_RETURN_IF_ERROR(CheckFrom(context.jobs.table(), number, request.from_sequence()));
   const uint32_t from = request.from_sequence() == 0 ? 1 : request.from_sequence();
-  const auto call = std::make_shared<WatchCall>(context.jobs, number, from);
-  EYEBOX_RETURN_IF_ERROR(call->Start());
-  return call.get();
+  const auto watch = std::make_shared<WatchCall>(context, call, number, from);
+  EYEBOX_RETURN_IF_ERROR(watch->Start());
+  return watch.get();
 }
 
 }  // namespace
 
 grpc::ServerWriteReactor<v1::JobEvent>* WatchJob(const HandlerContext& context,
+                                                 grpc::CallbackServerContext* call,
                                                  const v1::WatchJobRequest* request) {
-  const auto call = Watch(context, *request);
-  return call.ok() ? *call : new FailedStream<v1::JobEvent>(call.status());
+  const auto watch = Watch(context, call, *request);
+  return watch.ok() ? *watch : new FailedStream<v1::JobEvent>(watch.status());
 }
 
 }  // namespace eyebox::service

@@ -29,7 +29,7 @@ class ServerFixture : public testing::Test {
   }
   void TearDown() override { StopServer(); }
 
-  ServerOptions Options() const {
+  virtual ServerOptions Options() const {
     return {.listen = Address(),
             .data = folder_.path() / "data",
             .state = folder_.path() / "state",

@@ -145,7 +145,7 @@ TEST_F(CatalogueTest, PagesNeitherSkipNorRepeatWhileRecordingsComeAndGo) {
     std::vector<std::string> kept;
     for (const char* name : {"b", "d", "f", "h", "j", "l", "n"}) {
       // Equal times, so that the name decides too.
-      WriteSmall(Data() / name, {.start_ns = 1'000'000'000 * (1 + name[0] % 3)});
+      WriteSmall(Data() / name, {.start_ns = int64_t{1'000'000'000} * (1 + name[0] % 3)});
       kept.push_back(name);
     }
     WriteSmall(Data() / "m", {});

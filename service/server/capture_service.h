@@ -56,6 +56,15 @@ class CaptureServiceImpl final : public v1::CaptureService::CallbackService {
       grpc::CallbackServerContext* /*call*/) override {
     return service::RunPlan(context_);
   }
+  grpc::ServerWriteReactor<v1::PreviewFrame>* Preview(grpc::CallbackServerContext* call,
+                                                      const v1::PreviewRequest* request) override {
+    return service::Preview(context_, call, request);
+  }
+  grpc::ServerUnaryReactor* GetPreviewFrame(grpc::CallbackServerContext* call,
+                                            const v1::PreviewRequest* request,
+                                            v1::PreviewFrame* response) override {
+    return service::GetPreviewFrame(context_, call, request, response);
+  }
 
  private:
   const HandlerContext context_;

@@ -28,15 +28,32 @@ constexpr int kMaxStreamsPerConnection = 128;
 constexpr int kDiskThreads = 2;
 constexpr std::chrono::seconds kDrainTime(5);
 
+bool Captures(const v1::CreateJobRequest& request) {
+  return request.has_capture() || (request.has_run() && request.run().has_rig());
+}
+
+// While a job captures nobody looks through a camera.
+Work WithoutPreviews(Work work, std::shared_ptr<PreviewHub> previews) {
+  return [work = std::move(work), previews = std::move(previews)](const Assignment& assignment,
+                                                                  const Watcher& watcher) {
+    std::optional<PreviewHub::Hold> hold;
+    if (Captures(assignment.request)) {
+      hold.emplace(*previews, "the job of request \"" + assignment.request.request_id() + "\"");
+    }
+    return work(assignment, watcher);
+  };
+}
+
 class GrpcServer final : public Server {
  public:
   GrpcServer(const ServerOptions& options, const Clock* clock, RootFolder recordings,
-             std::unique_ptr<Jobs> jobs)
+             std::unique_ptr<Jobs> jobs, std::shared_ptr<PreviewHub> previews)
       : options_(options),
         clock_(clock),
         recordings_(std::move(recordings)),
         jobs_(std::move(jobs)),
-        log_(options.log ? options.log : std::make_shared<ServerLog>([](const std::string&) {})) {}
+        log_(options.log ? options.log : std::make_shared<ServerLog>([](const std::string&) {})),
+        previews_(std::move(previews)) {}
   ~GrpcServer() override { Stop(); }
 
   absl::Status ExposeMetrics() {
@@ -90,6 +107,7 @@ class GrpcServer final : public Server {
     if (!server_) return;
     watch_.reset();
     SetServing(false);
+    previews_->Stop();
     jobs_->Stop();
     catalogue_.Stop();
     server_->Shutdown(std::chrono::system_clock::now() + kDrainTime);
@@ -145,8 +163,10 @@ class GrpcServer final : public Server {
   Catalogue catalogue_{options_.state, &recordings_, clock_,
                        [this](const std::string& what) { TellOfCatalogue(what); }};
   Executor catalogue_thread_{1};
+  const std::shared_ptr<PreviewHub> previews_;
   const HandlerContext context_ = {
-      *jobs_, disk_, recordings_, catalogue_, catalogue_thread_, options_.stalled_after};
+      *jobs_,    disk_, recordings_, catalogue_, catalogue_thread_, options_.stalled_after,
+      *previews_};
   RunServiceImpl service_{context_};
   JobServiceImpl job_service_{context_};
   CaptureServiceImpl capture_service_{context_};
@@ -164,10 +184,12 @@ absl::StatusOr<std::unique_ptr<Server>> Server::Start(const ServerOptions& optio
   EYEBOX_ASSIGN_OR_RETURN(const auto credentials, MakeCredentials(options.access, endpoint.tcp));
   EYEBOX_ASSIGN_OR_RETURN(RootFolder recordings, RootFolder::Open(options.data));
   EYEBOX_ASSIGN_OR_RETURN(std::unique_ptr<JobStore> store, JobStore::Open(options.state));
+  auto previews = std::make_shared<PreviewHub>();
   EYEBOX_ASSIGN_OR_RETURN(std::unique_ptr<Jobs> jobs,
-                          Jobs::Open(std::move(store), std::move(work), clock, options.jobs));
-  auto server =
-      std::make_unique<GrpcServer>(options, clock, std::move(recordings), std::move(jobs));
+                          Jobs::Open(std::move(store), WithoutPreviews(std::move(work), previews),
+                                     clock, options.jobs));
+  auto server = std::make_unique<GrpcServer>(options, clock, std::move(recordings), std::move(jobs),
+                                             std::move(previews));
   EYEBOX_RETURN_IF_ERROR(server->ExposeMetrics());
   EYEBOX_RETURN_IF_ERROR(server->Listen(endpoint, credentials));
   return server;

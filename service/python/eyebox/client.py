@@ -16,7 +16,7 @@ from typing import Any, Iterator, Optional, Union
 import grpc
 from google.protobuf import json_format
 
-from eyebox import arrays, capture, errors, recordings
+from eyebox import arrays, capture, errors, preview, recordings
 from eyebox.v1 import (capture_pb2, capture_service_pb2, capture_service_pb2_grpc, job_service_pb2,
                        job_service_pb2_grpc, recording_pb2, recording_service_pb2_grpc, results_pb2,
                        service_pb2, service_pb2_grpc)
@@ -283,6 +283,16 @@ class Client:
         else:
             work.rig = rig
         return self.create(request_id, capture=work)
+
+    def preview(self, rig: str, *, seed: int = 1, exposure_s: float = 0, gain_db: float = 0,
+                most_width_px: int = 0, drive: Optional[float] = None) -> Iterator[preview.Picture]:
+        """What the rig's camera sees now, ten times a second at most, until the loop is left; a slow
+        script gets the newest picture. `rig` as in session(); `drive` is the grey that a simulated
+        headset shows; zeros are the server's defaults.
+        Raises InvalidRequest, NotFound, and Rejected where a job captures, which also ends a
+        preview under way."""
+        request = preview.request_of(rig, seed, exposure_s, gain_db, most_width_px, drive)
+        return preview.pictures(self._stubs["Preview"], request)
 
     def job(self, name: str) -> Job:
         """The job of that name. Raises NotFound."""

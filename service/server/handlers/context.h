@@ -7,6 +7,7 @@
 #include "service/server/catalogue/catalogue.h"
 #include "service/server/jobs/executor.h"
 #include "service/server/jobs/jobs.h"
+#include "service/server/preview/preview_hub.h"
 #include "service/server/store/beneath.h"
 
 namespace eyebox::service {
@@ -19,6 +20,7 @@ struct HandlerContext {
   Catalogue& catalogue;                     // of its recordings
   Executor& catalogue_thread;               // for what waits for the catalogue
   std::chrono::milliseconds stalled_after;  // see StallGuard
+  PreviewHub& previews;
 };
 
 }  // namespace eyebox::service

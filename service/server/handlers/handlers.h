@@ -62,6 +62,14 @@ grpc::ServerUnaryReactor* AckShown(const HandlerContext& context, grpc::Callback
 grpc::ServerBidiReactor<v1::RunPlanRequest, v1::StimulusStep>* RunPlan(
     const HandlerContext& context);
 
+grpc::ServerWriteReactor<v1::PreviewFrame>* Preview(const HandlerContext& context,
+                                                    grpc::CallbackServerContext* call,
+                                                    const v1::PreviewRequest* request);
+grpc::ServerUnaryReactor* GetPreviewFrame(const HandlerContext& context,
+                                          grpc::CallbackServerContext* call,
+                                          const v1::PreviewRequest* request,
+                                          v1::PreviewFrame* response);
+
 grpc::ServerUnaryReactor* ListRigs(const HandlerContext& context, grpc::CallbackServerContext* call,
                                    const v1::ListRigsRequest* request,
                                    v1::ListRigsResponse* response);

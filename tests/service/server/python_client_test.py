@@ -239,6 +239,19 @@ class PythonClientTest(unittest.TestCase):
             job.result()
         self.assertIn("cube_file", str(caught.exception))
 
+    def test_a_preview_shows_what_the_camera_sees_and_ends_with_the_loop(self):
+        seen = []
+        for picture in self.client.preview("sim:rift-s-like", drive=1.0, exposure_s=0.0125):
+            seen.append(picture)
+            if len(seen) == 2:
+                break
+        self.assertEqual(seen[0].pixels.shape, (120, 160))
+        self.assertGreater(seen[0].pixels.mean(), 50)
+        self.assertGreater(seen[1].frame, seen[0].frame)
+        with self.assertRaises(eyebox.InvalidRequest) as caught:
+            next(self.client.preview("sim:rift-s-like", most_width_px=1))
+        self.assertEqual(caught.exception.where, "most_width_px")
+
     def test_failed_job_says_what_was_wrong_with_the_recording(self):
         (self.folder / "data" / "empty").mkdir(exist_ok=True)
         job = self.client.run(recording="empty")

@@ -11,6 +11,7 @@
 namespace eyebox::fit {
 namespace {
 
+constexpr size_t kStarts = 5;
 constexpr double kChance = 3;  // standard deviations of chi-square that count as chance
 
 std::string UnitOf(int parameter, const GlareSeries& series) {
@@ -45,6 +46,51 @@ std::vector<FittedGlareReading> Compare(const GlareSeries& series,
   return fitted;
 }
 
+// From the grid of starting points unless one is given.
+absl::StatusOr<ScatterFit> Fit(const GlareSeries& series, const ScatterFitOptions& options,
+                               const ScatterFit* start) {
+  EYEBOX_RETURN_IF_ERROR(series.Validate());
+  EYEBOX_RETURN_IF_ERROR(options.Validate());
+  const GlareModel model(series, options);
+  const int readings = static_cast<int>(series.readings.size());
+  const int free = static_cast<int>(model.Free().size());
+  if (readings < free) {
+    return Rejected(series.source,
+                    absl::StrCat(readings, " glare readings for ", free, " free parameters"),
+                    "measure more disks or hold parameters that are known");
+  }
+  std::vector<GlareCoordinates> starts;
+  if (start == nullptr) {
+    starts = StartingPoints(model, kStarts);
+  } else {
+    GlareValues values{};
+    for (int i = 0; i < kGlareParameters; ++i) values[i] = start->parameters[i].value;
+    starts = {model.CoordinatesOf(values)};
+  }
+  EYEBOX_ASSIGN_OR_RETURN(GlareSolution solution, SolveGlare(model, starts));
+  const GlareValues values = model.ValuesOf(solution.coordinates);
+  ScatterFit fit;
+  fit.kernel = KernelOf(values, options);
+  fit.bright_luminance = values[kBright];
+  fit.background_luminance = values[kBackground];
+  fit.readings = Compare(series, model.Predict(values));
+  fit.chi_square = solution.chi_square;
+  fit.degrees_of_freedom = readings - free;
+  fit.termination = std::move(solution.termination);
+  GlareUncertainty uncertainty = MeasureUncertainty(
+      model, solution.coordinates, ExcessScatter(fit.chi_square, fit.degrees_of_freedom));
+  fit.covariance = uncertainty.covariance;
+  fit.open = std::move(uncertainty.open);
+  fit.identifiability = std::move(uncertainty.identifiability);
+  for (int i = 0; i < kGlareParameters; ++i) {
+    const double variance = fit.covariance[i * (kGlareParameters + 1)];
+    fit.parameters[i] = {kGlareNames[i], values[i], std::sqrt(std::max(variance, 0.0)),
+                         UnitOf(i, series)};
+  }
+  fit.glare_relative_sigma = GlareRelativeSigma(fit);
+  return fit;
+}
+
 }  // namespace
 
 absl::Status ScatterFitOptions::Validate() const {
@@ -75,38 +121,12 @@ KnownScatter ScatterFit::AsInstrument() const {
 }
 
 absl::StatusOr<ScatterFit> FitScatter(const GlareSeries& series, const ScatterFitOptions& options) {
-  EYEBOX_RETURN_IF_ERROR(series.Validate());
-  EYEBOX_RETURN_IF_ERROR(options.Validate());
-  const GlareModel model(series, options);
-  const int readings = static_cast<int>(series.readings.size());
-  const int free = static_cast<int>(model.Free().size());
-  if (readings < free) {
-    return Rejected(series.source,
-                    absl::StrCat(readings, " glare readings for ", free, " free parameters"),
-                    "measure more disks or hold parameters that are known");
-  }
-  EYEBOX_ASSIGN_OR_RETURN(GlareSolution solution, SolveGlare(model));
-  const GlareValues values = model.ValuesOf(solution.coordinates);
-  ScatterFit fit;
-  fit.kernel = KernelOf(values, options);
-  fit.bright_luminance = values[kBright];
-  fit.background_luminance = values[kBackground];
-  fit.readings = Compare(series, model.Predict(values));
-  fit.chi_square = solution.chi_square;
-  fit.degrees_of_freedom = readings - free;
-  fit.termination = std::move(solution.termination);
-  GlareUncertainty uncertainty = MeasureUncertainty(
-      model, solution.coordinates, ExcessScatter(fit.chi_square, fit.degrees_of_freedom));
-  fit.covariance = uncertainty.covariance;
-  fit.open = std::move(uncertainty.open);
-  fit.identifiability = std::move(uncertainty.identifiability);
-  for (int i = 0; i < kGlareParameters; ++i) {
-    const double variance = fit.covariance[i * (kGlareParameters + 1)];
-    fit.parameters[i] = {kGlareNames[i], values[i], std::sqrt(std::max(variance, 0.0)),
-                         UnitOf(i, series)};
-  }
-  fit.glare_relative_sigma = GlareRelativeSigma(fit);
-  return fit;
+  return Fit(series, options, nullptr);
+}
+
+absl::StatusOr<ScatterFit> FitScatterFrom(const ScatterFit& start, const GlareSeries& series,
+                                          const ScatterFitOptions& options) {
+  return Fit(series, options, &start);
 }
 
 }  // namespace eyebox::fit

@@ -85,6 +85,10 @@ struct ScatterFit {
 absl::StatusOr<ScatterFit> FitScatter(const GlareSeries& series,
                                       const ScatterFitOptions& options = {});
 
+// The same from a fit of nearly the same series: a fraction of the time.
+absl::StatusOr<ScatterFit> FitScatterFrom(const ScatterFit& start, const GlareSeries& series,
+                                          const ScatterFitOptions& options);
+
 }  // namespace eyebox::fit
 
 #endif  // EYEBOX_FIT_SCATTER_FIT_SCATTER_H_

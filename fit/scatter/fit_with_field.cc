@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "capture/base/status.h"
-#include "optics/scatter/radial_profile.h"
 #include "optics/uniformity/point_uniformity.h"
 
 namespace eyebox::fit {
@@ -21,22 +19,34 @@ double CornerPx(ImageSize size, const optics::PixelPoint& axis) {
   return std::hypot(across, down);
 }
 
-// Share of a ring that lies within the image.
-double ShareInside(ImageSize size, const optics::PixelPoint& axis, double inner_px,
-                   double outer_px) {
-  const double nearest = std::min({axis.x_px, axis.y_px, size.width_px - 1 - axis.x_px,
-                                   size.height_px - 1 - axis.y_px}) +
-                         0.5;
-  if (outer_px <= nearest) return 1;
-  double pixels = 0;
-  for (int y = 0; y < size.height_px; ++y) {
-    for (int x = 0; x < size.width_px; ++x) {
-      const double r = std::hypot(x - axis.x_px, y - axis.y_px);
-      pixels += r >= inner_px && r < outer_px ? 1 : 0;
+// Mean over each ring of equal width around the axis, to the farthest corner. What lies beside the
+// image is dark or as its border. A ring without a valid pixel is as the one before.
+std::vector<double> RingMeans(const optics::MeasuredImage& field, const BrightField& where,
+                              int rings, double corner_px) {
+  const auto [width, height] = field.size();
+  const auto reach = static_cast<int>(std::ceil(corner_px));
+  const auto axis_x = static_cast<int>(std::lround(where.axis.x_px));
+  const auto axis_y = static_cast<int>(std::lround(where.axis.y_px));
+  std::vector<double> sum(rings), pixels(rings);
+  for (int y = axis_y - reach; y <= axis_y + reach; ++y) {
+    const int row = std::clamp(y, 0, height - 1);
+    for (int x = axis_x - reach; x <= axis_x + reach; ++x) {
+      const double r = std::hypot(x - where.axis.x_px, y - where.axis.y_px);
+      const auto ring = static_cast<int>(r / corner_px * rings);
+      if (ring >= rings) continue;
+      const int column = std::clamp(x, 0, width - 1);
+      const bool inside = row == y && column == x;
+      const bool dark = !inside && where.surround == optics::Surround::kDark;
+      if (!dark && field.mask.at(column, row) != 0) continue;
+      sum[ring] += dark ? 0 : field.value.at(column, row);
+      ++pixels[ring];
     }
   }
-  const double area = std::numbers::pi * (outer_px * outer_px - inner_px * inner_px);
-  return std::min(pixels / area, 1.0);
+  for (int k = 0; k < rings; ++k) {
+    const double before = k > 0 ? sum[k - 1] : 0;
+    sum[k] = pixels[k] > 0 ? sum[k] / pixels[k] : before;
+  }
+  return sum;
 }
 
 // Largest move of a kernel parameter, in its sigmas; held ones do not move.
@@ -76,27 +86,15 @@ absl::StatusOr<std::vector<FieldRing>> MeasureFieldRings(const optics::MeasuredI
     return Rejected("bright field", absl::StrCat("luminance ", middle.value, " on the axis"),
                     "record a bright full field");
   }
-  const double last_deg = CornerPx(field.size(), where.axis) * where.pitch_deg;
+  const double corner_px = CornerPx(field.size(), where.axis);
   std::vector<FieldRing> result;
-  for (int k = 0; k < rings; ++k) {
-    const std::vector<double> edges = {last_deg * k / rings, last_deg * (k + 1) / rings};
-    const auto ring = optics::MeasureRadialProfile(field, where.axis.x_px, where.axis.y_px,
-                                                   where.pitch_deg, edges);
-    // A ring without a valid pixel is taken to go on as the one before.
-    if (!ring.ok() && !absl::IsFailedPrecondition(ring.status())) return ring.status();
-    const double before = result.empty() ? 1 : result.back().relative;
-    const double relative = ring.ok() ? std::max(ring->front().value / middle.value, 0.0) : before;
-    result.push_back({edges.back(), relative});
+  for (const double mean : RingMeans(field, where, rings, corner_px)) {
+    const double outer_px = corner_px * static_cast<double>(result.size() + 1) / rings;
+    result.push_back({outer_px * where.pitch_deg, std::max(mean / middle.value, 0.0)});
   }
-  if (where.surround == optics::Surround::kDark) {
-    double inner_px = 0;
-    for (FieldRing& ring : result) {
-      const double outer_px = ring.outer_radius_deg / where.pitch_deg;
-      ring.relative *= ShareInside(field.size(), where.axis, inner_px, outer_px);
-      inner_px = outer_px;
-    }
-  } else {
-    result.back().outer_radius_deg = std::max(result.back().outer_radius_deg, field_radius_deg);
+  if (where.surround != optics::Surround::kDark &&
+      result.back().outer_radius_deg < field_radius_deg) {
+    result.push_back({field_radius_deg, result.back().relative});
   }
   return result;
 }
@@ -111,7 +109,8 @@ absl::StatusOr<FieldFit> FitScatterWithField(const GlareSeries& series, const Br
   while (result.rounds < options.most_rounds && !result.settled) {
     EYEBOX_ASSIGN_OR_RETURN(
         with_field.field, MeasureFieldRings(*seen, field, options.rings, series.field_radius_deg));
-    EYEBOX_ASSIGN_OR_RETURN(result.fit, FitScatter(with_field, options.fit));
+    EYEBOX_ASSIGN_OR_RETURN(result.fit, before ? FitScatterFrom(*before, with_field, options.fit)
+                                               : FitScatter(with_field, options.fit));
     EYEBOX_ASSIGN_OR_RETURN(
         result.removal,
         optics::RemoveGlare(field.luminance, {result.fit.kernel, result.fit.glare_relative_sigma,

@@ -31,7 +31,7 @@ struct BrightField {
 
 struct FieldFitOptions {
   ScatterFitOptions fit;
-  int rings = 8;          // of g around the axis
+  int rings = 16;         // of g around the axis
   int most_rounds = 6;    // of fit and removal; 1: g as it was read
   double settled = 0.02;  // in sigmas of each kernel parameter: w stays
 

@@ -42,7 +42,7 @@ GlareModel::GlareModel(const GlareSeries& series, const ScatterFitOptions& optio
     : series_(series),
       options_(options),
       luminance_unit_(series.LargestLuminance() / 100),
-      table_(series, options) {}
+      table_(LightTable::Of(series, options)) {}
 
 std::vector<int> GlareModel::Free() const {
   const std::array<bool, kGlareParameters> held = {options_.core_radius_deg.has_value(),

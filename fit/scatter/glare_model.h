@@ -78,9 +78,10 @@ struct GlareSolution {
   std::string termination;
 };
 
-// The best optimum reached from the best of a grid of starting points.
+// The best optimum reached from these starting points.
 // Errors: FailedPrecondition (converged from none of them).
-absl::StatusOr<GlareSolution> SolveGlare(const GlareModel& model);
+absl::StatusOr<GlareSolution> SolveGlare(const GlareModel& model,
+                                         const std::vector<GlareCoordinates>& starts);
 
 // Starting points, best first: coarse kernels, each with the luminances that suit it best.
 std::vector<GlareCoordinates> StartingPoints(const GlareModel& model, size_t most);

@@ -11,6 +11,15 @@ namespace {
 
 bool IsAngle(double value) { return value >= 0 && std::isfinite(value); }
 
+bool AreShares(const std::vector<OffsetShare>& offsets) {
+  double sum = 0;
+  for (const auto& [offset_deg, share] : offsets) {
+    if (!IsAngle(offset_deg) || !(share > 0)) return false;
+    sum += share;
+  }
+  return offsets.empty() || std::abs(sum - 1) < 1e-9;
+}
+
 absl::Status CheckField(const GlareSeries& series) {
   double inner = 0;
   for (size_t i = 0; i < series.field.size(); ++i) {
@@ -22,7 +31,27 @@ absl::Status CheckField(const GlareSeries& series) {
     }
     inner = outer;
   }
-  return absl::OkStatus();
+  if (series.field.empty() || series.FieldAt(0) > 0) return absl::OkStatus();
+  return BadInput(series.source, "the field is dark in its centre", "aim at the lit display");
+}
+
+// Where a straight line over the square of the radius has the mean of the ring.
+double MeanSquare(const std::vector<FieldRing>& field, size_t ring) {
+  const double inner = ring == 0 ? 0 : field[ring - 1].outer_radius_deg;
+  const double outer = field[ring].outer_radius_deg;
+  return (inner * inner + outer * outer) / 2;
+}
+
+// The outermost ring goes on as it is.
+double Between(const std::vector<FieldRing>& field, double square) {
+  if (field.size() == 1) return field.front().relative;
+  size_t next = 1;
+  while (next + 1 < field.size() && MeanSquare(field, next) < square) ++next;
+  const double from = MeanSquare(field, next - 1);
+  const double part = std::min((square - from) / (MeanSquare(field, next) - from), 1.0);
+  const double value =
+      field[next - 1].relative + part * (field[next].relative - field[next - 1].relative);
+  return std::max(value, 0.0);
 }
 
 }  // namespace
@@ -46,6 +75,11 @@ absl::Status GlareSeries::Validate() const {
                                    reading.offset_deg, " deg"),
                       "give angles of at least 0");
     }
+    if (!AreShares(reading.offsets)) {
+      return BadInput(where, "the offsets of its pixels",
+                      "give angles of at least 0 and shares "
+                      "above 0 that sum to 1");
+    }
     if (!std::isfinite(reading.luminance)) {
       return BadInput(where, absl::StrCat("luminance ", reading.luminance),
                       "give a finite luminance or leave the reading out");
@@ -57,6 +91,15 @@ absl::Status GlareSeries::Validate() const {
   }
   if (LargestLuminance() > 0) return absl::OkStatus();
   return BadInput(source, "no glare reading is above 0", "look whether the display was on");
+}
+
+double GlareSeries::FieldEndDeg() const {
+  return field.empty() ? field_radius_deg : field.back().outer_radius_deg;
+}
+
+double GlareSeries::FieldAt(double radius_deg) const {
+  if (field.empty()) return 1;
+  return Between(field, radius_deg * radius_deg) / Between(field, 0);
 }
 
 double GlareSeries::LargestLuminance() const {

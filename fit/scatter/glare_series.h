@@ -15,20 +15,27 @@ enum class GlarePattern {
   kBlackDisk,   // black on the bright field
 };
 
+// How far pixels of a reading look from the disk's centre, and which share of them does.
+struct OffsetShare {
+  double offset_deg = 0;
+  double share = 1;
+};
+
 struct GlareReading {
   GlarePattern pattern = GlarePattern::kBrightDisk;
   double diameter_deg = 0;  // 0: no disk, the plain field
-  // Of the disk's centre from where the instrument looks. A ring of pixels has one offset only if
-  // it is narrow: away from the core, which falls off within less than a ring.
+  // Of the disk's centre from where the instrument looks; of several pixels a mean.
   double offset_deg = 0;
-  double luminance = 0;        // unit of the series; of a camera, of the pixels that look there
-  double luminance_sigma = 0;  // standard uncertainty, without the scale's
+  double luminance = 0;                   // unit of the series; of a camera, the mean of its pixels
+  double luminance_sigma = 0;             // standard uncertainty, without the scale's
+  std::vector<OffsetShare> offsets = {};  // of its pixels, shares sum to 1; empty: all as above
 };
 
-// A ring of the display around the disk's centre, from the ring before to `outer_radius_deg`.
+// A ring of the display around the disk's centre, from the ring before to `outer_radius_deg`. In
+// between, g is a straight line over the square of the radius.
 struct FieldRing {
   double outer_radius_deg = 0;
-  double relative = 1;  // mean of g over it, 1 where the spot looks at large disks
+  double relative = 1;  // mean of g over it, in any unit: all is taken relative to the centre
 };
 
 struct GlareSeries {
@@ -44,6 +51,9 @@ struct GlareSeries {
   // finite, luminance not finite, sigma not above 0) or ring.
   absl::Status Validate() const;
   double LargestLuminance() const;
+  double FieldEndDeg() const;
+  // g over g in the centre; 1 of an even field.
+  double FieldAt(double radius_deg) const;
 };
 
 }  // namespace eyebox::fit

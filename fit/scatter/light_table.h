@@ -4,7 +4,6 @@
 #define EYEBOX_FIT_SCATTER_LIGHT_TABLE_H_
 
 #include <cstddef>
-#include <map>
 #include <utility>
 #include <vector>
 
@@ -28,7 +27,7 @@ struct ReadingLight {
 class LightTable {
  public:
   // Both must be valid. Tabulates what the instrument alone does.
-  LightTable(const GlareSeries& series, const ScatterFitOptions& options);
+  static LightTable Of(const GlareSeries& series, const ScatterFitOptions& options);
 
   // One for each reading. Energies to 1e-6, derivatives to 1e-5; of what falls on a small disk in
   // the tail, relative. `kernel` has the reach and the shapes of the options.
@@ -40,21 +39,20 @@ class LightTable {
     std::vector<double> beyond;  // factors of this radius and all larger ones, summed
   };
   using Share = std::pair<size_t, double>;  // region, factor
-  using Row = std::vector<Share>;           // light as a sum of regions
+  struct Row {                              // what light is a sum of
+    std::vector<Share> core;                // of regions, unless the table has it
+    double pedestal = 0;
+  };
 
-  void AddRow(const GlareSeries& series, const ScatterFitOptions& options, double radius_deg,
-              double offset_deg);
-  size_t RegionOf(const ScatterFitOptions& options, double radius_deg, double offset_deg);
-  void Tabulate();
-  optics::PartEnergy CoreOn(const Region& region, const optics::RadialWeight& weight) const;
+  friend class LightTableBuilder;
+  LightTable() = default;
+  optics::PartEnergy CoreOf(const Row& row, const optics::RadialWeight& weight) const;
 
-  double reach_deg_;
-  std::map<std::pair<double, double>, size_t> region_of_;  // by radius and offset
   std::vector<Region> regions_;
-  std::vector<Row> rows_;            // disk and field of each reading, [2 readings]
   std::vector<double> radius_deg_;   // ascending to the reach, even steps of the logarithm
-  std::vector<double> tail_factor_;  // of the tail's energy within them, [2 readings, radii]
-  std::vector<double> pedestal_;     // [2 readings]
+  std::vector<Row> rows_;            // disk and rest of each reading, [2 readings]
+  std::vector<double> tail_factor_;  // of the tail's energy within each radius, [2 readings, radii]
+  std::vector<double> core_factor_;  // the same of a Gaussian core
 };
 
 }  // namespace eyebox::fit

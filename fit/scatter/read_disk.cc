@@ -2,47 +2,44 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string_view>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "capture/base/status.h"
+#include "fit/scatter/pixel_reading.h"
 #include "optics/reduce/flat_variance.h"
-#include "optics/scatter/radial_profile.h"
+#include "optics/scatter/spread_light.h"
 
 namespace eyebox::fit {
 namespace {
 
+constexpr double kSpotStepPx = 0.1;
+constexpr double kRingStep = 0.03;       // of the distance from the disk's edge
 constexpr double kLeastOwnShare = 1e-6;  // single precision may lose the rest of a variance
 
 absl::StatusOr<GlareReading> ReadSpot(const optics::MeasuredImage& image,
                                       const optics::Calibration& calibration, const DiskAim& aim,
                                       double radius_px) {
-  double sum = 0, variance = 0, square_px = 0, pixels = 0;
+  PixelReading spot(kSpotStepPx);
   const auto [width, height] = image.size();
   for (int y = 0; y < height; ++y) {
-    if (std::abs(y - aim.axis.y_px) > radius_px) continue;
+    const double down = y - aim.axis.y_px;
+    if (std::abs(down) > radius_px) continue;
     for (int x = 0; x < width; ++x) {
-      const double r = std::hypot(x - aim.axis.x_px, y - aim.axis.y_px);
-      if (r > radius_px || image.mask.at(x, y) != 0) continue;
+      const double across = x - aim.axis.x_px;
+      if (std::hypot(across, down) > radius_px || image.mask.at(x, y) != 0) continue;
       const double value = image.value.at(x, y);
       const double whole = image.variance.at(x, y);
       const double flat =
           optics::FlatVariance(value, calibration, static_cast<size_t>(y) * width + x);
-      sum += value;
-      variance += std::max(whole - flat, kLeastOwnShare * whole);
-      square_px += r * r;
-      ++pixels;
+      spot.Add(across, down, value, std::max(whole - flat, kLeastOwnShare * whole));
     }
   }
-  if (pixels == 0) {
-    return Rejected("spot on the axis", "it holds no valid pixel",
-                    "record exposures that neither saturate nor vanish there, or widen the spot");
-  }
-  GlareReading reading;
-  reading.offset_deg = std::sqrt(square_px / pixels) * aim.pitch_deg;
-  reading.luminance = sum / pixels;
-  reading.luminance_sigma = std::sqrt(variance) / pixels;
-  return reading;
+  if (!spot.empty()) return spot.Finish(aim.pitch_deg);
+  return Rejected("spot on the axis", "it holds no valid pixel",
+                  "record exposures that neither saturate nor vanish there, or widen the spot");
 }
 
 // From outside the disk to the nearest side of the image.
@@ -59,19 +56,32 @@ std::vector<double> RingEdges(ImageSize size, const DiskAim& aim, double disk_ra
   return edges;
 }
 
-absl::Status AddRings(const optics::MeasuredImage& image, const DiskAim& aim, double diameter_deg,
-                      const DiskReadingOptions& options, std::vector<GlareReading>& readings) {
+std::vector<GlareReading> ReadRings(const optics::MeasuredImage& image, const DiskAim& aim,
+                                    double diameter_deg, const DiskReadingOptions& options) {
   const std::vector<double> edges = RingEdges(image.size(), aim, diameter_deg / 2, options);
-  if (edges.size() < 2) return absl::OkStatus();
-  const auto rings =
-      optics::MeasureRadialProfile(image, aim.axis.x_px, aim.axis.y_px, aim.pitch_deg, edges);
-  if (absl::IsFailedPrecondition(rings.status())) return absl::OkStatus();  // all of it masked
-  if (!rings.ok()) return rings.status();
-  for (const optics::RadialReading& ring : *rings) {
-    readings.push_back(
-        {GlarePattern::kBrightDisk, diameter_deg, ring.tail_offset_deg, ring.value, ring.sigma});
+  if (edges.size() < 2) return {};
+  std::vector<PixelReading> rings;
+  for (size_t k = 0; k + 1 < edges.size(); ++k) {
+    // Light falls off the faster the nearer the disk.
+    rings.emplace_back(kRingStep * (edges[k] - diameter_deg / 2) / aim.pitch_deg);
   }
-  return absl::OkStatus();
+  const auto [width, height] = image.size();
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      if (image.mask.at(x, y) != 0) continue;
+      const double across = x - aim.axis.x_px;
+      const double down = y - aim.axis.y_px;
+      const auto next = std::ranges::upper_bound(edges, std::hypot(across, down) * aim.pitch_deg);
+      if (next == edges.begin() || next == edges.end()) continue;
+      rings[next - edges.begin() - 1].Add(across, down, image.value.at(x, y),
+                                          image.variance.at(x, y));
+    }
+  }
+  std::vector<GlareReading> readings;
+  for (const PixelReading& ring : rings) {
+    if (!ring.empty()) readings.push_back(ring.Finish(aim.pitch_deg));
+  }
+  return readings;
 }
 
 }  // namespace
@@ -95,15 +105,16 @@ absl::StatusOr<std::vector<GlareReading>> ReadDisk(const optics::MeasuredImage& 
                                                    double diameter_deg,
                                                    const DiskReadingOptions& options) {
   EYEBOX_RETURN_IF_ERROR(options.Validate());
+  EYEBOX_RETURN_IF_ERROR(optics::CheckGrid(image.size(), aim.pitch_deg));
   EYEBOX_ASSIGN_OR_RETURN(GlareReading spot,
                           ReadSpot(image, calibration, aim, options.spot_radius_px));
-  spot.pattern = pattern;
-  spot.diameter_deg = diameter_deg;
-  std::vector<GlareReading> readings = {spot};
+  std::vector<GlareReading> readings = {std::move(spot)};
   if (pattern == GlarePattern::kBrightDisk && diameter_deg > 0) {
-    EYEBOX_RETURN_IF_ERROR(AddRings(image, aim, diameter_deg, options, readings));
+    std::ranges::move(ReadRings(image, aim, diameter_deg, options), std::back_inserter(readings));
   }
   for (GlareReading& reading : readings) {
+    reading.pattern = pattern;
+    reading.diameter_deg = diameter_deg;
     reading.luminance_sigma =
         std::hypot(reading.luminance_sigma, options.model_relative_sigma * reading.luminance);
   }

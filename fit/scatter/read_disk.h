@@ -18,8 +18,9 @@ struct DiskReadingOptions {
   // Rings of this ratio of radii around a bright disk, from its edge and `ring_guard_px` on.
   double ring_ratio = 1.1;
   double ring_guard_px = 3;  // away from the edge, where the core blurs it
-  // What the model leaves out (pixel grid, unevenness under a disk), relative to each reading.
-  double model_relative_sigma = 0.002;
+  // What the model leaves out (g between its rings, light beside the image), relative to each
+  // reading.
+  double model_relative_sigma = 0.0005;
 
   // Errors: InvalidArgument naming the option.
   absl::Status Validate() const;

@@ -14,7 +14,6 @@
 namespace eyebox::fit {
 namespace {
 
-constexpr size_t kStarts = 5;
 constexpr double kAtBound = 1e-6;
 
 // Residuals (predicted - measured) / sigma, [readings]; one block: the free coordinates.
@@ -118,10 +117,11 @@ Attempt MinimizeFrom(const GlareModel& model, const GlareCoordinates& start) {
 
 }  // namespace
 
-absl::StatusOr<GlareSolution> SolveGlare(const GlareModel& model) {
+absl::StatusOr<GlareSolution> SolveGlare(const GlareModel& model,
+                                         const std::vector<GlareCoordinates>& starts) {
   std::optional<GlareSolution> best;
   std::string last_message = "no starting point";
-  for (const GlareCoordinates& start : StartingPoints(model, kStarts)) {
+  for (const GlareCoordinates& start : starts) {
     const Attempt attempt = MinimizeFrom(model, start);
     last_message = attempt.summary.message;
     if (attempt.summary.termination_type != ceres::CONVERGENCE) continue;

@@ -19,6 +19,7 @@ namespace {
 constexpr double kLeastStructure = 0.01;  // of the noise: an image without any is not smoothed away
 constexpr double kRounding = 3e-7;        // of the brightest pixel, float32 through two transforms
 constexpr int kGainRows = 8;              // every so many frequencies are asked for the noise gain
+constexpr float kLost = 1e-8F;            // squared transfer below which w has left nothing
 constexpr float kSmallest = 1e-12F;       // keeps 0 / 0 out where W vanishes
 
 // 2 - 2 cos of the frequencies 0 .. 1/2 per pixel.
@@ -159,6 +160,7 @@ double ScatterCorrector::Deconvolve(double lambda, Image<float>& light) {
   const std::vector<float> down = Roughness(torus_.frequencies().height_px);
   const auto strength = static_cast<float>(lambda);
   const bool keep_core = options_.keep_core;
+  const auto of_core = static_cast<float>(1 / kernel_.CoreShare());
   double squares = 0;
   size_t asked = 0;
   torus_.Filter(light, [&](int y_frequency, std::span<float> gain) {
@@ -167,10 +169,13 @@ double ScatterCorrector::Deconvolve(double lambda, Image<float>& light) {
     const float* const rough = across.data();
     const float rough_down = down[y_frequency];
     for (size_t j = 0; j < gain.size(); ++j) {
+      if (keep_core) {
+        gain[j] = (core[j] * whole[j] + kLost * of_core) / (whole[j] * whole[j] + kLost);
+        continue;
+      }
       const float lost = std::max(1 - core[j] * core[j], 0.0F);
       const float penalty = strength * (rough[j] + rough_down) * lost;
-      const float target = keep_core ? core[j] : 1.0F;
-      gain[j] = target * whole[j] / (whole[j] * whole[j] + penalty + kSmallest);
+      gain[j] = whole[j] / (whole[j] * whole[j] + penalty + kSmallest);
     }
     if (y_frequency % kGainRows != 0) return;
     for (const float g : gain) squares += static_cast<double>(g) * g;
@@ -253,7 +258,9 @@ absl::StatusOr<ScatterCorrection> ScatterCorrector::Correct(const LuminanceImage
   }
   const Image<float>& filled = own.empty() ? image.value : own;
   ScatterCorrection correction = Blank(reading);
-  correction.regularisation = ChooseRegularisation(filled, found.noise_variance);
+  if (!options_.keep_core) {
+    correction.regularisation = ChooseRegularisation(filled, found.noise_variance);
+  }
   correction.luminance.image.value = filled;
   correction.noise_gain = Deconvolve(correction.regularisation, correction.luminance.image.value);
   Wide wide = Spread(image, filled, !own.empty());

@@ -28,13 +28,13 @@ struct CorrectionOptions {
 struct ScatterCorrection {
   // Same unit and mask. Masked pixels stay without a value; for the others their light was taken
   // from the surroundings (see FillMasked). The variance of a pixel is right where the noise varies
-  // little over the core; after the correction neighbours within it are no longer independent.
+  // little over the core; without the core, neighbours within it are no longer independent.
   LuminanceImage luminance;
   // Unit of the image, [height, width], NaN where masked: above it a pixel's luminance is within
   // floor_tolerance of the truth, at floor_sigmas. Counts noise, the uncertainty of the kernel
   // times the glare that was removed, all glare from masked pixels, and rounding.
   Image<float> floor;
-  double regularisation = 0;     // 0 for noiseless images
+  double regularisation = 0;     // 0 for noiseless images and where the core is kept
   double noise_gain = 1;         // variance out over variance in, for even noise
   double below_floor_share = 0;  // of the valid pixels
   double light_before = 0;       // sums over the valid pixels
@@ -42,13 +42,15 @@ struct ScatterCorrection {
 };
 
 // Prepared for one kernel and image size, for any number of images. With W and C the transfers of w
-// and its core, a spectrum is multiplied by C W / (W^2 + lambda K (1 - C^2)) (C = 1 in the
-// numerator if the core goes too): a Wiener filter for images whose power falls as 1 / frequency^2,
-// of which K is the discrete form 4 - 2 cos - 2 cos. lambda = noise variance / mean squared
-// gradient of the image, so that noise is held down only where the core has lost the signal. The
-// gain at frequency 0 is exactly 1 / sum of w: energy is conserved. The scene is taken as dark
-// outside the image; what it scatters across the edge is allowed for. Not thread-safe: owns its
-// work memory (16 times the pixels of the image, in bytes 64 per pixel).
+// and its core, a spectrum is multiplied by C / W if the core is kept: at most 1 / the core's
+// share, which is also what is left of it where both vanish, so that noise stays independent from
+// pixel to pixel. If the core goes too, by W / (W^2 + lambda K (1 - C^2)): a Wiener filter for
+// images whose power falls as 1 / frequency^2, of which K is the discrete form 4 - 2 cos - 2 cos.
+// lambda = noise variance / mean squared gradient of the image, so that noise is held down only
+// where the core has lost the signal. The gain at frequency 0 is exactly 1 / sum of w: energy is
+// conserved. The scene is taken as dark outside the image; what it scatters across the edge is
+// allowed for. Not thread-safe: owns its work memory (16 times the pixels of the image, in bytes 64
+// per pixel).
 class ScatterCorrector {
  public:
   // Errors: InvalidArgument (kernel, options, pitch not above 0, empty size).

@@ -45,7 +45,7 @@ const std::vector<optics::Disk> kDisks = {{0.05, 0},  {0.5, 0}, {3, 0},   {0.2, 
 TEST(LightTable, DisksAndFieldsAreThoseOfTheIntegrals) {
   for (const ScatterKernel& kernel : optics::AllKernels()) {
     const RadialWeight weight(kernel);
-    const auto light = LightTable(SeriesOf(kDisks), OptionsFor(kernel)).LightFor(kernel);
+    const auto light = LightTable::Of(SeriesOf(kDisks), OptionsFor(kernel)).LightFor(kernel);
     ASSERT_EQ(light.size(), kDisks.size());
     // A core with an edge and a tail with a kink are not smooth between the nodes of either sum.
     const bool smooth =
@@ -64,7 +64,7 @@ TEST(LightTable, SmallDiskInTheTailIsSeenToManyDigits) {
     const ScatterKernel kernel{
         .core_radius_deg = 0.05, .tail_share = 1e-3, .tail_exponent = exponent, .reach_deg = 30};
     const std::vector<optics::Disk> disks = {{0.05, 1}, {0.2, 5}, {0.1, 20}};
-    const auto light = LightTable(SeriesOf(disks), OptionsFor(kernel)).LightFor(kernel);
+    const auto light = LightTable::Of(SeriesOf(disks), OptionsFor(kernel)).LightFor(kernel);
     for (size_t i = 0; i < disks.size(); ++i) {
       const double disk = EnergyInDisk(RadialWeight(kernel), disks[i]);
       EXPECT_NEAR(Through(kernel, light[i].disk) / disk, 1, 1e-4) << exponent << ", disk " << i;
@@ -73,19 +73,39 @@ TEST(LightTable, SmallDiskInTheTailIsSeenToManyDigits) {
 }
 
 TEST(LightTable, AnUnevenFieldIsASumOfDisks) {
+  constexpr int kSteps = 4000;
   const ScatterKernel kernel{.core_radius_deg = 0.1, .tail_share = 0.3, .reach_deg = 20};
-  GlareSeries series = SeriesOf({{3, 0}, {3, 0.5}});
-  series.field = {{2, 1}, {5, 0.8}, {9, 0.5}};
+  GlareSeries series = SeriesOf({{3, 0}, {3, 0.5}, {3, 4}});
+  for (int k = 1; k <= 9; ++k) series.field.push_back({static_cast<double>(k), 1 - 0.006 * k * k});
   const RadialWeight weight(kernel);
-  const auto light = LightTable(series, OptionsFor(kernel)).LightFor(kernel);
+  const auto light = LightTable::Of(series, OptionsFor(kernel)).LightFor(kernel);
   for (size_t i = 0; i < light.size(); ++i) {
+    // Disks of falling luminance laid over each other.
     const auto within = [&](double radius) {
-      return EnergyInDisk(weight, {radius, series.readings[i].offset_deg});
+      double sum = 0;
+      for (int k = 0; k < kSteps; ++k) {
+        const double edge = radius * (k + 1) / kSteps;
+        const double next = k + 1 < kSteps ? series.FieldAt(radius * (k + 1.5) / kSteps) : 0;
+        const double step = series.FieldAt(radius * (k + 0.5) / kSteps) - next;
+        sum += step * EnergyInDisk(weight, {edge, series.readings[i].offset_deg});
+      }
+      return sum;
     };
-    EXPECT_NEAR(Through(kernel, light[i].disk), 0.2 * within(2) + 0.8 * within(3), 1e-6);
-    EXPECT_NEAR(Through(kernel, light[i].rest),
-                0.8 * (within(5) - within(3)) + 0.5 * (within(9) - within(5)), 1e-6);
+    const double disk = within(3);
+    EXPECT_NEAR(Through(kernel, light[i].disk), disk, 2e-4) << i;
+    EXPECT_NEAR(Through(kernel, light[i].rest), within(9) - disk, 2e-4) << i;
   }
+}
+
+TEST(GlareSeries, FieldIsStraightOverTheSquareOfTheRadius) {
+  GlareSeries series;
+  EXPECT_EQ(series.FieldAt(7), 1);
+  // Means of 2 - r^2 / 50 over each ring.
+  series.field = {{2, 1.96}, {4, 1.8}, {6, 1.48}};
+  for (const double r : {0.0, 1.0, 3.0, 5.0}) {
+    EXPECT_NEAR(series.FieldAt(r), 1 - r * r / 100, 1e-12) << r;
+  }
+  EXPECT_NEAR(series.FieldAt(30), 1.48 / 2, 1e-12);  // goes on as in the outermost ring
 }
 
 TEST(LightTable, BehindAnInstrumentItIsThatOfTheSecondScatterer) {
@@ -93,7 +113,7 @@ TEST(LightTable, BehindAnInstrumentItIsThatOfTheSecondScatterer) {
   const ScatterKernel kernel{.core_radius_deg = 0.1, .tail_share = 0.2, .reach_deg = 20};
   ScatterFitOptions options = OptionsFor(kernel);
   options.instrument = KnownScatter{instrument, {}};
-  const auto light = LightTable(SeriesOf(kDisks), options).LightFor(kernel);
+  const auto light = LightTable::Of(SeriesOf(kDisks), options).LightFor(kernel);
   const RadialWeight first(instrument), second(kernel);
   for (size_t i = 0; i < kDisks.size(); ++i) {
     EXPECT_NEAR(Through(kernel, light[i].disk),

@@ -2,9 +2,15 @@
 #ifndef EYEBOX_TESTS_TOOLS_COVERAGE_SMALL_RIG_H_
 #define EYEBOX_TESTS_TOOLS_COVERAGE_SMALL_RIG_H_
 
+#include <cmath>
+#include <cstdint>
+
+#include "capture/base/random.h"
 #include "capture/camera/sim/parameters.h"
 
 namespace eyebox {
+
+inline constexpr double kSmallRigDegPerPx = 0.1;
 
 // 96 x 96 pixels of 0.1 deg, 12 bits; a tenth of the light goes into a tail of 0.6 deg.
 inline capture::SimParameters SmallRig() {
@@ -17,6 +23,18 @@ inline capture::SimParameters SmallRig() {
                         .tail_scale_px = 6,
                         .tail_beta = 1.5,
                         .tail_radius_px = 80};
+  return parameters;
+}
+
+// The same through another w: shares of the tail from 0.1 % to 30 %, core and tail as lenses and
+// headsets have them, exponents from 2.4 to 4.4.
+inline capture::SimParameters SmallRigOfAnyScatter(uint64_t seed) {
+  capture::SimParameters parameters = SmallRig();
+  RandomStream random({seed, 99});
+  parameters.scatter.core_sigma_px = 0.5 + 0.7 * random.Uniform();
+  parameters.scatter.tail_weight = 0.001 * std::pow(300.0, random.Uniform());
+  parameters.scatter.tail_scale_px = 3 * std::pow(5.0, random.Uniform());
+  parameters.scatter.tail_beta = 1.2 + random.Uniform();
   return parameters;
 }
 

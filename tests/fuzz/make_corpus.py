@@ -37,6 +37,11 @@ def requests():
     put("requests", "run-recording", b"\xff" + field(1, "id-1") + field(2, "a/b") + sizes)
     rig = field(1, "lab") + field(2, "sim:rift-s-like") + b"\x18\x07"
     put("requests", "run-rig", b"\xff" + field(1, "id-2") + field(3, rig))
+    put("requests", "job-reduce", b"\x08" + field(1, "id-3") + field(3, field(1, field(1, "a/b"))))
+    put("requests", "job-tradeoff", b"\x08" + field(1, "id-4") + field(12, field(1, rig)))
+    put("requests", "job-plan",
+        b"\x08" + field(1, "id-5") + field(13, field(1, "scene.textproto") + field(2, rig)))
+    put("requests", "preview", b"\x09" + field(2, rig) + b"\x28\x40")  # most_width_px 64
 
 
 def list_recordings():

@@ -1,10 +1,15 @@
 // What a client sends: names of every kind, and whole requests. The first byte chooses.
 #include <algorithm>
 #include <array>
+#include <string>
 
 #include <google/protobuf/stubs/logging.h>
 
+#include "eyebox/v1/capture_service.pb.h"
+#include "eyebox/v1/job_service.pb.h"
 #include "eyebox/v1/service.pb.h"
+#include "service/server/handlers/validate_job.h"
+#include "service/server/handlers/validate_preview.h"
 #include "service/server/handlers/validate_run.h"
 #include "service/server/listen.h"
 #include "service/server/store/names.h"
@@ -39,11 +44,50 @@ void TryName(const NameRule& rule, std::string_view name) {
   CheckHarmless(*checked);
 }
 
-void TryRequest(std::string_view bytes) {
+template <typename Request>
+bool Parse(std::string_view bytes, Request& request) {
   // It would complain of every text that is no UTF-8.
   [[maybe_unused]] static const auto* const silenced = new google::protobuf::LogSilencer();
+  return request.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()));
+}
+
+void TryJob(std::string_view bytes) {
+  v1::CreateJobRequest request;
+  if (!Parse(bytes, request)) return;
+  const absl::Status valid = ValidateJob(request);
+  if (!valid.ok()) return CheckRefusal(valid);
+  CheckHarmless(request.request_id());
+  for (const std::string& path :
+       {request.run().recording(), request.reduce().source().recording(),
+        request.uniformity().source().recording(), request.characterize().recording(),
+        request.fit().csv(), request.fit().series().recording(), request.scatter().csv(),
+        request.scatter().series().recording(), request.verify().csv(),
+        request.verify().series().recording(), request.predict().csv(), request.predict().cube(),
+        request.capture().rig(), request.tradeoff().recording(), request.plan().scene(),
+        request.plan().recording()}) {
+    if (!path.empty()) CheckHarmless(path);
+  }
+  for (const v1::Rig& rig : {request.run().rig(), request.capture().simulated(),
+                             request.tradeoff().simulated(), request.plan().simulated()}) {
+    FUZZ_CHECK(rig.sensor().empty());
+  }
+}
+
+void TryPreview(std::string_view bytes) {
+  v1::PreviewRequest request;
+  if (!Parse(bytes, request)) return;
+  const absl::Status valid = ValidatePreview(request);
+  if (!valid.ok()) return CheckRefusal(valid);
+  FUZZ_CHECK(request.exposure_s() >= 0 && request.exposure_s() <= 10);
+  FUZZ_CHECK(request.most_width_px() >= 0 && request.most_width_px() <= 1024);
+  if (request.has_rig()) return CheckHarmless(request.rig());
+  CheckHarmless(request.simulated().camera_uri());
+  FUZZ_CHECK(request.simulated().sensor().empty());
+}
+
+void TryRequest(std::string_view bytes) {
   v1::CreateRunRequest request;
-  if (!request.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return;
+  if (!Parse(bytes, request)) return;
   const absl::Status valid = ValidateRun(request);
   if (!valid.ok()) return CheckRefusal(valid);
   CheckHarmless(request.request_id());
@@ -67,6 +111,10 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     const auto endpoint = EndpointOf(rest);
     if (endpoint.ok())
       FUZZ_CHECK(EndpointOf(endpoint->ForGrpc())->ForGrpc() == endpoint->ForGrpc());
+  } else if (data[0] == kRules.size() + 2) {
+    TryJob(rest);
+  } else if (data[0] == kRules.size() + 3) {
+    TryPreview(rest);
   } else {
     TryRequest(rest);
   }

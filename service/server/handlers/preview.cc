@@ -1,56 +1,30 @@
-#include <cmath>
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <string>
 #include <utility>
 
 #include "capture/base/status.h"
 #include "service/server/handlers/handlers.h"
 #include "service/server/handlers/reply.h"
 #include "service/server/handlers/stall_guard.h"
-#include "service/server/handlers/validate_run.h"
+#include "service/server/handlers/validate_preview.h"
 #include "service/server/store/rigs.h"
 
 namespace eyebox::service {
 namespace {
 
-constexpr double kLongestExposureS = 10;
-constexpr int kLeastWidthPx = 16;
-constexpr int kMostWidthPx = 1024;
-
-absl::StatusOr<capture::RigConfig> RigOf(const RootFolder& data,
-                                         const v1::PreviewRequest& request) {
-  if (request.has_rig()) {
-    EYEBOX_RETURN_IF_ERROR(CheckName(kRigNameRule, "rig", request.rig()).status());
-    return ReadRig(data, request.rig());
-  }
-  if (!request.has_simulated()) {
-    return BadField("source", "is missing", "give a rig, or a simulated one");
-  }
-  EYEBOX_RETURN_IF_ERROR(ValidateRig(request.simulated()));
-  return ConfigOf(request.simulated());
-}
-
 absl::StatusOr<PreviewView> ViewOf(const RootFolder& data, const v1::PreviewRequest& request) {
+  EYEBOX_RETURN_IF_ERROR(ValidatePreview(request));
   PreviewView view;
+  if (request.has_rig()) {
+    EYEBOX_ASSIGN_OR_RETURN(view.rig, ReadRig(data, request.rig()));
+  } else {
+    view.rig = ConfigOf(request.simulated());
+  }
   if (request.exposure_s() != 0) view.exposure_s = request.exposure_s();
-  if (!(view.exposure_s > 0 && view.exposure_s <= kLongestExposureS)) {
-    return BadField("exposure_s", "is " + std::to_string(view.exposure_s),
-                    "give a time above 0, at most 10 s");
-  }
   view.gain_db = request.gain_db();
-  if (!std::isfinite(view.gain_db)) return BadField("gain_db", "is not finite", "give a number");
   if (request.most_width_px() != 0) view.most_width_px = request.most_width_px();
-  if (view.most_width_px < kLeastWidthPx || view.most_width_px > kMostWidthPx) {
-    return BadField("most_width_px", "is " + std::to_string(view.most_width_px),
-                    "give 16 to 1024, or 0 for 320");
-  }
   if (request.has_drive()) view.drive = request.drive();
-  if (view.drive && !(*view.drive >= 0 && *view.drive <= 1)) {
-    return BadField("drive", "is " + std::to_string(*view.drive), "give 0 to 1");
-  }
-  EYEBOX_ASSIGN_OR_RETURN(view.rig, RigOf(data, request));
   return view;
 }
 

@@ -13,13 +13,13 @@ namespace {
 
 const optics::ReduceOptions kGrey{.colour_period_px = 1};
 
-CaptureSpec DarkScene() {
-  CaptureSpec spec;
-  spec.kind = FrameKind::kDark;
-  return spec;
-}
-
 }  // namespace
+
+CaptureSpec DarkScene() {
+  CaptureSpec scene;
+  scene.kind = FrameKind::kDark;
+  return scene;
+}
 
 std::vector<uint64_t> SceneKeyOf(const CaptureSpec& spec) {
   const DriveRgb drive = spec.stimulus.drive.value_or(DriveRgb{});

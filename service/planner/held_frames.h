@@ -13,8 +13,10 @@ namespace eyebox::service {
 
 // What a frame of one scene is told by, whatever its exposure.
 std::vector<uint64_t> SceneKeyOf(const CaptureSpec& spec);
-// Both mixed into one seed.
+// All of a key in one number.
 uint64_t MixedKey(const std::vector<uint64_t>& key);
+
+CaptureSpec DarkScene();
 
 class HeldFrames : public FrameSource {
  public:

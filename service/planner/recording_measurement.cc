@@ -19,12 +19,6 @@ constexpr size_t kFewestForSpline = 9;  // levels
 
 const optics::ReduceOptions kGrey{.colour_period_px = 1};
 
-CaptureSpec DarkScene() {
-  CaptureSpec scene;
-  scene.kind = FrameKind::kDark;
-  return scene;
-}
-
 CaptureSpec GreyScene(double drive) {
   CaptureSpec scene;
   scene.stimulus.drive = DriveRgb{drive, drive, drive};

@@ -116,9 +116,12 @@ class PlanBuilder {
 
   void AddLevelsAndReferences(const std::vector<int>& order) {
     const auto every = static_cast<size_t>(options_.reference_every);
+    const auto darks_every = static_cast<size_t>(options_.dark_every);
     for (size_t i = 0; i < order.size(); ++i) {
       if (every > 0 && i % every == 0) AddReference();
       AddLevel(order[i]);
+      const bool last = i + 1 == order.size();
+      if (darks_every > 0 && ((i + 1) % darks_every == 0 || last)) AddDarks();
     }
     if (every > 0) AddReference();
   }
@@ -182,6 +185,7 @@ absl::Status PlanOptions::Validate() const {
   }
   EYEBOX_RETURN_IF_ERROR(CheckCount("repeats", repeats, 1, 65536));
   EYEBOX_RETURN_IF_ERROR(CheckCount("dark_repeats", dark_repeats, 1, 65536));
+  EYEBOX_RETURN_IF_ERROR(CheckCount("dark_every", dark_every, 0, 4096));
   EYEBOX_RETURN_IF_ERROR(CheckCount("flat_repeats", flat_repeats, 0, 65536));
   EYEBOX_RETURN_IF_ERROR(CheckReference(*this));
   EYEBOX_RETURN_IF_ERROR(CheckDisks(*this));

@@ -24,6 +24,9 @@ struct PlanOptions {
   double gain_db = 0;
   int repeats = 2;  // frames per level and exposure
   int dark_repeats = 8;
+  // The darks come back after every so many levels and after the last: for a camera whose
+  // temperature changes. 0: they are taken once, at the beginning.
+  int dark_every = 0;
   // Flats fill about 70 % of the well in the middle exposure and still count in the shortest:
   // 8 frames of each leave 0.29 % per pixel on the axis, 0.34 % in the corners (cos^4 = 0.69).
   int flat_repeats = 8;  // 0: no flats
@@ -46,11 +49,11 @@ struct PlanOptions {
   absl::Status Validate() const;
 };
 
-// Darks of every exposure, flats at every exposure (reduction masks what saturates), then grey full
-// fields: the levels in random order, so that drift of display or camera does not look like a
-// slope, each with the whole bracket, shortest exposure first. Level i has level_id i. References
-// between them are the series kReferenceSeries; disks follow, as given.
-// Errors: those of Validate().
+// Darks of every exposure (with dark_every between the levels too), flats at every exposure
+// (reduction masks what saturates), then grey full fields: the levels in random order, so that
+// drift of display or camera does not look like a slope, each with the whole bracket, shortest
+// exposure first. Level i has level_id i. References between them are the series kReferenceSeries;
+// disks follow, as given. Errors: those of Validate().
 absl::StatusOr<CapturePlan> MakeGreyPlan(const PlanOptions& options);
 
 // 0 to levels - 1 in the order of such a plan (Fisher & Yates).

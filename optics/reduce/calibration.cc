@@ -24,6 +24,7 @@ absl::StatusOr<DarkFrame> MeasureDark(const Stack& dark, const NoiseModel& noise
     clipped += mean[i] == 0 ? 1 : 0;
   }
   BlankMaskedPixels(measured.image_dn);
+  measured.temperature_degC = dark.temperature_degC;
   measured.clipped_share = static_cast<double>(clipped) / static_cast<double>(mean.size());
   measured.image_dn.history.push_back(absl::StrCat("MeasureDark(", Describe(dark.setting),
                                                    ", frames ", dark.frames, ", clipped share ",

@@ -4,7 +4,7 @@
 //   darks  = FrameStacker per dark setting
 //   defects = FindHotPixels(darks)
 //   noise  = PhotonTransfer(shortest dark, defects) <- frames of every capture -> Fit()
-//   dark   = MeasureDark(stack, noise) per setting
+//   dark   = MeasureDark(stack, noise) per setting and temperature, StateDarkCurrents()
 //   linearity, where asked = EstimateLinearity(MeasureExposurePairs(stacks of constant light))
 //   flat   = MeasureFlat(stacks of the flat, calibration so far, known luminance)
 #ifndef EYEBOX_OPTICS_REDUCE_CALIBRATION_H_
@@ -31,6 +31,9 @@ struct DarkFrame {
   // Share of pixels that read 0 DN in every frame: the camera clips its own noise, and what lies
   // below its black level stays unknown.
   double clipped_share = 0;
+  std::optional<double> temperature_degC = {};  // mean of its frames, where all of them tell it
+  // Upper bound of what dark current adds to the mean count; unknown until StateDarkCurrents().
+  std::optional<double> dark_current_dn = {};
 };
 
 // The answer to uniform light. `response` is a rate in DN/s of light of `luminance`; without a
@@ -43,7 +46,7 @@ struct FlatField {
 struct Calibration {
   NoiseModel noise;
   double saturation_margin = SensorRange{}.saturation_margin;  // of the stacks to be reduced
-  std::vector<DarkFrame> darks;                                // one per setting used
+  std::vector<DarkFrame> darks;  // one per setting used and temperature
   // Settings of lights without a dark for which none could be interpolated, and why.
   std::vector<std::pair<Setting, std::string>> refused_darks;
   DefectMap defects;
@@ -57,7 +60,8 @@ struct Calibration {
 // Mean and variance of a dark stack. Errors: InvalidArgument (empty stack).
 absl::StatusOr<DarkFrame> MeasureDark(const Stack& dark, const NoiseModel& noise);
 
-// The dark of this setting. Errors: InvalidArgument (there is none: names those there are).
+// The first dark of this setting, whatever its temperature; see also DarkFor().
+// Errors: InvalidArgument (there is none: names those there are).
 absl::StatusOr<const DarkFrame*> FindDark(const Calibration& calibration, const Setting& setting);
 
 }  // namespace eyebox::optics

@@ -7,6 +7,7 @@
 #define EYEBOX_OPTICS_REDUCE_EXPECTED_RATE_H_
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -18,10 +19,10 @@
 
 namespace eyebox::optics {
 
-// One exposure of the bracket and the dark that belongs to it. Borrowed.
+// One exposure of the bracket, borrowed, and the dark that belongs to it, see DarkFor().
 struct Exposure {
   const Stack* light = nullptr;
-  const DarkFrame* dark = nullptr;
+  std::shared_ptr<const DarkFrame> dark;
   Image<uint8_t> saturation;     // of light, see SaturationMask
   int saturation_first_row = 0;  // row of light that its first row belongs to
 };

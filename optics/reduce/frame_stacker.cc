@@ -79,7 +79,7 @@ std::string Describe(const Setting& setting) {
   return absl::StrCat("exposure ", setting.exposure_s, " s, gain ", setting.gain_db, " dB");
 }
 
-absl::Status FrameStacker::Add(const FrameView& frame) {
+absl::Status FrameStacker::Add(const FrameView& frame, std::optional<double> temperature_degC) {
   EYEBOX_RETURN_IF_ERROR(Validate(range_));
   const size_t count = frame.size.PixelCount();
   const std::string where = absl::StrCat("frame ", frames_ + 1, " of ", Describe(setting_));
@@ -103,6 +103,10 @@ absl::Status FrameStacker::Add(const FrameView& frame) {
     *this = FrameStacker(setting_, range_, keep_extremes_);
     return BadInput(where, absl::StrCat("a count is above ", range_.FullScaleDn(), " DN"),
                     absl::StrCat("state more significant bits than ", range_.bits));
+  }
+  if (temperature_degC) {
+    ++temperatures_;
+    temperature_sum_ += *temperature_degC;
   }
   ++frames_;
   ++partial_frames_;
@@ -173,6 +177,7 @@ absl::StatusOr<Stack> FrameStacker::Finish() {
     }
   });
   stack.extremes = std::move(extremes_);
+  if (temperatures_ == frames_) stack.temperature_degC = temperature_sum_ / frames_;
   *this = FrameStacker(setting_, range_, keep_extremes_);
   return stack;
 }

@@ -44,6 +44,8 @@ struct Stack {
   // Frames that mean_dn leaves out, see clip_stack.h; empty: none anywhere.
   Image<uint8_t> rejected_count = {};
   std::optional<Extremes> extremes = std::nullopt;  // where the stacker kept them
+  // Of the sensor, mean over the frames; where all of them tell it.
+  std::optional<double> temperature_degC = std::nullopt;
 
   ImageSize size() const { return mean_dn.size(); }
 };
@@ -59,7 +61,7 @@ class FrameStacker {
   // The first frame decides the size. Errors: InvalidArgument (another size, an empty frame, a
   // count above 2^bits - 1, more than 65536 frames); the frame is then not added. After a count
   // above 2^bits - 1 the stacker is empty.
-  absl::Status Add(const FrameView& frame);
+  absl::Status Add(const FrameView& frame, std::optional<double> temperature_degC = {});
 
   int frames() const { return frames_; }
 
@@ -78,6 +80,8 @@ class FrameStacker {
   SensorRange range_;
   bool keep_extremes_ = false;
   int frames_ = 0;
+  int temperatures_ = 0;  // frames that told theirs
+  double temperature_sum_ = 0;
   // Sums are exact. Frames go into 16 bits as long as those hold them, which takes half the way to
   // memory and back, then into 32 bits, which hold 65536 frames of 16 bits; no pixels until then.
   Image<uint16_t> partial_dn_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -120,6 +121,16 @@ absl::Status ProveLine(const std::vector<const DarkFrame*>& darks, const Line& l
   return absl::OkStatus();
 }
 
+std::optional<double> MeanTemperature(const std::vector<const DarkFrame*>& darks, const Line& line,
+                                      const Setting& setting) {
+  double sum = 0;
+  for (size_t k = 0; k < darks.size(); ++k) {
+    if (!darks[k]->temperature_degC) return std::nullopt;
+    sum += line.Share(k, setting.exposure_s) * *darks[k]->temperature_degC;
+  }
+  return sum;
+}
+
 DarkFrame Evaluate(const std::vector<const DarkFrame*>& darks, const Line& line,
                    const Setting& setting) {
   DarkFrame result{setting, MakeMeasuredImage(darks[0]->image_dn.size(), "DN")};
@@ -137,6 +148,10 @@ DarkFrame Evaluate(const std::vector<const DarkFrame*>& darks, const Line& line,
     absl::StrAppend(&names, k > 0 ? ", " : "", line.x[k], " s");
   }
   BlankMaskedPixels(image);
+  result.temperature_degC = MeanTemperature(darks, line, setting);
+  if (const auto longest = darks.back()->dark_current_dn) {
+    result.dark_current_dn = *longest * setting.exposure_s / darks.back()->setting.exposure_s;
+  }
   image.history.push_back(
       absl::StrCat("InterpolateDark(", Describe(setting), ", from darks of ", names, ")"));
   return result;

@@ -1,6 +1,7 @@
 #include "optics/reduce/order_bracket.h"
 
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -8,6 +9,7 @@
 #include "capture/base/status.h"
 #include "optics/reduce/divide_by_exposure.h"
 #include "optics/reduce/linearise.h"
+#include "optics/reduce/match_dark.h"
 #include "optics/reduce/measure_stack.h"
 #include "optics/reduce/saturation_mask.h"
 #include "optics/reduce/subtract_dark.h"
@@ -47,13 +49,14 @@ absl::StatusOr<std::vector<Exposure>> OrderBracket(std::span<const Stack> stacks
   std::vector<Exposure> bracket;
   for (const Stack& stack : stacks) {
     EYEBOX_RETURN_IF_ERROR(CheckExposure(stack, stacks[0], calibration));
-    EYEBOX_ASSIGN_OR_RETURN(const DarkFrame* dark, FindDark(calibration, stack.setting));
+    EYEBOX_ASSIGN_OR_RETURN(std::shared_ptr<const DarkFrame> dark,
+                            DarkFor(calibration, stack.setting, stack.temperature_degC));
     if (dark->image_dn.size() != stack.size()) {
       return BadInput(absl::StrCat("dark of ", Describe(dark->setting)),
                       "its size differs from the light's",
                       "record both with one region of interest");
     }
-    bracket.push_back({&stack, dark, {}});
+    bracket.push_back({&stack, std::move(dark), {}});
   }
   std::sort(bracket.begin(), bracket.end(), [](const Exposure& a, const Exposure& b) {
     return a.light->setting.exposure_s < b.light->setting.exposure_s;

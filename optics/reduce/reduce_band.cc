@@ -1,6 +1,7 @@
 #include "optics/reduce/reduce_band.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "capture/base/status.h"
@@ -94,7 +95,9 @@ absl::StatusOr<std::vector<std::string>> HistoryOf(std::span<const Exposure> bra
   for (const Exposure& exposure : bracket) {
     const Empty empty(exposure);
     camera.defects.defective = Image<uint8_t>(empty.light.size());
-    const Exposure of_nothing{&empty.light, &empty.dark, Image<uint8_t>(empty.light.size())};
+    const Exposure of_nothing{&empty.light,
+                              {std::shared_ptr<const DarkFrame>(), &empty.dark},
+                              Image<uint8_t>(empty.light.size())};
     EYEBOX_ASSIGN_OR_RETURN(const MeasuredImage rate,
                             RateOf(of_nothing, Image<float>(empty.light.size()), camera, options));
     EYEBOX_RETURN_IF_ERROR(merger.Add(rate));

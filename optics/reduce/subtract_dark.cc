@@ -40,7 +40,8 @@ absl::StatusOr<MeasuredImage> SubtractDark(MeasuredImage light_dn, const Setting
   }
   SubtractPixels(dark.image_dn, light_dn);
   for (const std::string& step : dark.image_dn.history) {
-    if (step.starts_with("InterpolateDark(")) light_dn.history.push_back(step);
+    const bool made = step.starts_with("InterpolateDark(") || step.starts_with("MatchDark(");
+    if (made) light_dn.history.push_back(step);
   }
   light_dn.history.push_back(absl::StrCat("SubtractDark(", Describe(dark.setting), ")"));
   return light_dn;

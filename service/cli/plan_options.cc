@@ -11,6 +11,9 @@ std::vector<CLI::Option*> BindPlan(CLI::App& command, capture::PlanOptions& plan
           ->delimiter(','),
       command.add_option("--repeats", plan.repeats, "Frames per level and exposure"),
       command.add_option("--dark-repeats", plan.dark_repeats, "Dark frames per exposure"),
+      command.add_option("--dark-every", plan.dark_every,
+                         "Levels between two series of darks, for a camera that warms up; 0: darks "
+                         "at the beginning alone"),
       command.add_option("--flat-repeats", plan.flat_repeats,
                          "Flat frames per exposure; 0: no flats"),
       command.add_option("--reference-every", plan.reference_every,

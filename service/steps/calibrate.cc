@@ -1,6 +1,7 @@
 #include "service/steps/calibrate.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <span>
 #include <utility>
@@ -8,6 +9,7 @@
 
 #include "capture/base/status.h"
 #include "optics/reduce/interpolate_dark.h"
+#include "optics/reduce/match_dark.h"
 #include "optics/reduce/reduce_level.h"
 #include "optics/sensor/photon_transfer.h"
 #include "service/steps/captures.h"
@@ -17,13 +19,45 @@
 namespace eyebox::service {
 namespace {
 
+constexpr double kSameTemperatureK = 1;  // of darks that are averaged
+
+using Entries = std::vector<const capture::CaptureEntry*>;
+
+// By temperature, coldest first; each spans 1 K at most. Those that tell none come first, together.
+absl::StatusOr<std::vector<Entries>> ByTemperature(capture::RecordingReader& recording,
+                                                   const Entries& captures) {
+  std::vector<std::pair<std::optional<double>, const capture::CaptureEntry*>> known;
+  for (const capture::CaptureEntry* entry : captures) {
+    EYEBOX_ASSIGN_OR_RETURN(const FrameMetadata first, FirstMetadata(recording, *entry));
+    known.emplace_back(first.temperature_degC, entry);
+  }
+  std::ranges::stable_sort(known, {}, [](const auto& dark) { return dark.first; });
+  std::vector<Entries> groups;
+  std::optional<double> coldest;
+  for (const auto& [temperature, entry] : known) {
+    const bool apart = temperature && (!coldest || *temperature > *coldest + kSameTemperatureK);
+    if (groups.empty() || apart) {
+      groups.emplace_back();
+      coldest = temperature;
+    }
+    groups.back().push_back(entry);
+  }
+  return groups;
+}
+
 absl::StatusOr<std::vector<optics::Stack>> StackDarks(capture::RecordingReader& recording) {
   const auto captures = CapturesOfKind(recording, FrameKind::kDark);
   if (captures.empty()) {
     return Rejected("recording", "it holds no dark frames",
                     "record darks of every exposure with the lens covered");
   }
-  return StackCaptures(recording, captures);
+  EYEBOX_ASSIGN_OR_RETURN(const auto groups, ByTemperature(recording, captures));
+  std::vector<optics::Stack> darks;
+  for (const Entries& group : groups) {
+    EYEBOX_ASSIGN_OR_RETURN(auto stacks, StackCaptures(recording, group));
+    std::ranges::move(stacks, std::back_inserter(darks));
+  }
+  return darks;
 }
 
 absl::StatusOr<optics::NoiseModel> MeasureNoise(capture::RecordingReader& recording,
@@ -119,6 +153,7 @@ absl::StatusOr<optics::Calibration> CalibrateCamera(capture::RecordingReader& re
     EYEBOX_ASSIGN_OR_RETURN(optics::DarkFrame frame, optics::MeasureDark(dark, calibration.noise));
     calibration.darks.push_back(std::move(frame));
   }
+  optics::StateDarkCurrents(calibration);
   CompleteDarks(recording, calibration);
   EYEBOX_RETURN_IF_ERROR(watcher.Reach(0.9, "flat field and luminance scale"));
   EYEBOX_ASSIGN_OR_RETURN(calibration.flat, MeasureFlatOf(recording, calibration));

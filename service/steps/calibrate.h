@@ -12,6 +12,7 @@
 namespace eyebox::service {
 
 // Darks, hot pixels, noise, flat and luminance scale. Without flats the calibration has none.
+// Darks that are more than 1 K apart stay apart, see DarkFor().
 // A light without a dark of its setting gets one interpolated where the darks prove it, see
 // InterpolateDark(); else reducing it fails and says why.
 // `sensor_folder`, unless empty, holds the characterised sensor (see sensor.h): gain, read noise,

@@ -1,6 +1,7 @@
 #include "service/steps/captures.h"
 
 #include <algorithm>
+#include <optional>
 #include <set>
 
 #include "capture/base/status.h"
@@ -81,6 +82,17 @@ absl::StatusOr<std::vector<StimulusCaptures>> GreyLevels(const capture::Recordin
   return groups;
 }
 
+absl::StatusOr<FrameMetadata> FirstMetadata(capture::RecordingReader& recording,
+                                            const capture::CaptureEntry& entry) {
+  std::optional<FrameMetadata> first;
+  const absl::Status status = recording.VisitFrames(entry, [&first](const Frame& frame) {
+    first = frame.metadata;
+    return absl::CancelledError("one frame tells");
+  });
+  if (!first) return status;
+  return *first;
+}
+
 absl::StatusOr<std::vector<optics::Stack>> StackCaptures(
     capture::RecordingReader& recording, const std::vector<const capture::CaptureEntry*>& captures,
     double saturation_margin, bool keep_extremes) {
@@ -90,8 +102,9 @@ absl::StatusOr<std::vector<optics::Stack>> StackCaptures(
   for (const capture::CaptureEntry* entry : captures) {
     const optics::Setting setting{entry->spec.exposure_s, entry->spec.gain_db};
     optics::FrameStacker& stacker = StackerFor(stackers, setting, range, keep_extremes);
-    EYEBOX_RETURN_IF_ERROR(
-        recording.VisitFrames(*entry, [&](const Frame& frame) { return stacker.Add(frame.view); }));
+    EYEBOX_RETURN_IF_ERROR(recording.VisitFrames(*entry, [&](const Frame& frame) {
+      return stacker.Add(frame.view, frame.metadata.temperature_degC);
+    }));
   }
   std::vector<optics::Stack> stacks;
   for (auto& [setting, stacker] : stackers) {

@@ -33,6 +33,10 @@ absl::StatusOr<std::vector<StimulusCaptures>> LightCaptures(
 absl::StatusOr<std::vector<StimulusCaptures>> GreyLevels(const capture::RecordingReader& recording,
                                                          const std::string& series);
 
+// Of the first whole frame of a capture. Errors: those of reading.
+absl::StatusOr<FrameMetadata> FirstMetadata(capture::RecordingReader& recording,
+                                            const capture::CaptureEntry& entry);
+
 // One stack per exposure and gain; captures of the same setting are averaged together.
 // Errors: those of reading.
 absl::StatusOr<std::vector<optics::Stack>> StackCaptures(

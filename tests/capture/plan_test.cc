@@ -109,6 +109,15 @@ TEST(GreyPlan, ReferencesLeaveTheOrderOfLevelsAsItIs) {
   EXPECT_EQ(with->captures, without->captures);
 }
 
+TEST(GreyPlan, DarksComeBackAfterEverySoManyLevelsAndAfterTheLast) {
+  const auto plan =
+      MakeGreyPlan({.levels = 5, .exposures_s = {0.1, 0.4}, .dark_every = 2, .flat_repeats = 0});
+  ASSERT_TRUE(plan.ok()) << plan.status();
+  std::string order;
+  for (const CaptureSpec& spec : plan->captures) order += spec.kind == FrameKind::kDark ? 'd' : 'l';
+  EXPECT_EQ(order, "ddllllddllllddlldd");  // two exposures a level
+}
+
 TEST(GreyPlan, EveryOrderIsEquallyLikely) {
   int first_place[4] = {};
   for (uint64_t seed = 0; seed < 4000; ++seed) {
@@ -133,6 +142,7 @@ TEST(GreyPlan, RefusesOptionsByName) {
   EXPECT_THAT(message({.exposures_s = {0.1, nan}}), HasSubstr("exposures_s"));
   EXPECT_THAT(message({.exposures_s = {0.1, 0.1}}), HasSubstr("ascending"));
   EXPECT_THAT(message({.gain_db = nan}), HasSubstr("gain_db"));
+  EXPECT_THAT(message({.dark_every = -1}), HasSubstr("dark_every"));
   EXPECT_THAT(message({.repeats = 0}), HasSubstr("repeats"));
   EXPECT_THAT(message({.dark_repeats = 0}), HasSubstr("dark_repeats"));
   EXPECT_THAT(message({.flat_repeats = -1}), HasSubstr("flat_repeats"));

@@ -12,6 +12,9 @@ namespace {
 
 constexpr double kLongestAutomaticS = 0.1;
 constexpr double kStrobePeriodS = 1.0 / 90;
+constexpr double kColdDegC = 25;
+constexpr double kWarmingPresentations = 40;
+constexpr double kDoublingKelvin = 7;
 
 struct NamedFault {
   std::string_view name;
@@ -31,6 +34,7 @@ constexpr NamedFault kNamed[] = {
      }},
     {"moire", [](SimFaults& faults) { faults.display_pixel_px = 0.93; }},
     {"stuck-gain", [](SimFaults& faults) { faults.stuck_gain_db = 6; }},
+    {"warming", [](SimFaults& faults) { faults.warming_kelvin = 10; }},
 };
 
 absl::Status SetFault(std::string_view name, SimFaults& faults) {
@@ -115,6 +119,16 @@ Image<double> Flashed(const SimFaults& faults, const Image<double>& rate, double
     for (double& value : flashed.row(y)) value *= share;
   }
   return flashed;
+}
+
+std::optional<double> SensorTemperatureDegC(const SimFaults& faults, uint64_t presentation) {
+  if (faults.warming_kelvin == 0) return std::nullopt;
+  const double warmed = 1 - std::exp(-static_cast<double>(presentation) / kWarmingPresentations);
+  return kColdDegC + faults.warming_kelvin * warmed;
+}
+
+double DarkCurrentGrowth(std::optional<double> temperature_degC) {
+  return temperature_degC ? std::exp2((*temperature_degC - kColdDegC) / kDoublingKelvin) : 1;
 }
 
 Image<double> DisplayGrid(const SimFaults& faults, ImageSize size) {

@@ -46,6 +46,12 @@ class ExposureFault {
 Image<double> Flashed(const SimFaults& faults, const Image<double>& rate, double begin_s,
                       double exposure_s);
 
+// Of the sensor while a presentation stands; none where it does not warm up.
+std::optional<double> SensorTemperatureDegC(const SimFaults& faults, uint64_t presentation);
+
+// Dark current at this temperature over that of a sensor just switched on.
+double DarkCurrentGrowth(std::optional<double> temperature_degC);
+
 // The pixel grid of the display as the pixels of the camera integrate it, mean 1.
 Image<double> DisplayGrid(const SimFaults& faults, ImageSize size);
 

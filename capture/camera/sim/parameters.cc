@@ -98,6 +98,7 @@ absl::Status ValidateFaults(const SimFaults& faults) {
       {"faults.display_pixel_px", faults.display_pixel_px, 0, 1e4},
       {"faults.display_pixel_fill", faults.display_pixel_fill, 1e-6, 1},
       {"faults.stuck_gain_db", faults.stuck_gain_db, 0, 60},
+      {"faults.warming_kelvin", faults.warming_kelvin, 0, 60},
   });
 }
 

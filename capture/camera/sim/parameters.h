@@ -88,6 +88,9 @@ struct SimFaults {
   double display_pixel_px = 0;  // camera pixels per display pixel; 0: no grid is seen
   double display_pixel_fill = 0.6;  // lit share of the pitch, in x and in y
   double stuck_gain_db = 0;         // the gain never goes below
+  // The sensor warms up from 25 degC by so much, most of it in the first 40 presentations, and the
+  // dark current doubles with every 7 K. With 0 it tells no temperature.
+  double warming_kelvin = 0;
 };
 
 struct SimParameters {

@@ -45,11 +45,16 @@ class SimBench {
   std::vector<uint16_t> Expose(CameraSettings settings) {
     settings.exposure_s = exposure_fault_.Made(settings, rate_e_s_);
     NoiseSource noise({seed_, kFrameStream, presentation_, exposure_});
-    auto counts_dn =
-        capture::Expose(parameters_.sensor, pattern_, Rate(settings.exposure_s), settings, noise);
+    Image<double> rate_e_s = Rate(settings.exposure_s);
+    AddWarmth(rate_e_s);
+    auto counts_dn = capture::Expose(parameters_.sensor, pattern_, rate_e_s, settings, noise);
     ++exposure_;
     Distort(parameters_.faults, parameters_.sensor, counts_dn);
     return counts_dn;
+  }
+
+  std::optional<double> TemperatureDegC() const {
+    return SensorTemperatureDegC(parameters_.faults, presentation_);
   }
 
  private:
@@ -60,6 +65,15 @@ class SimBench {
     if (!flashes) return rate_e_s_;
     NoiseSource when({seed_, kFlashStream, presentation_, exposure_});
     return Flashed(faults, rate_e_s_, when.Uniform() * faults.strobe_period_s, exposure_s);
+  }
+
+  // Dark current beyond that of the cold sensor.
+  void AddWarmth(Image<double>& rate_e_s) const {
+    const double growth = DarkCurrentGrowth(TemperatureDegC());
+    if (growth == 1) return;
+    for (size_t i = 0; i < rate_e_s.pixels().size(); ++i) {
+      rate_e_s.pixels()[i] += (growth - 1) * pattern_.dark_current_e_s.pixels()[i];
+    }
   }
 
   // The scene does not depend on exposure, gain or name, so that a bracket draws it once.
@@ -163,6 +177,7 @@ class SimCamera final : public Camera {
     metadata.gain_asked_db = settings.gain_db;
     metadata.gain_reported_db = Settings().gain_db;
     metadata.black_level_dn = bias_dn_;
+    metadata.temperature_degC = bench_->TemperatureDegC();
     return metadata;
   }
 

@@ -21,6 +21,7 @@ capture::PlanOptions OptionsOf(const v1::MakePlanRequest& request) {
   }
   if (request.has_repeats()) options.repeats = request.repeats();
   if (request.has_dark_repeats()) options.dark_repeats = request.dark_repeats();
+  if (request.has_dark_every()) options.dark_every = request.dark_every();
   if (request.has_flat_repeats()) options.flat_repeats = request.flat_repeats();
   if (request.has_reference_every()) options.reference_every = request.reference_every();
   if (request.has_reference_drive()) options.reference_drive = request.reference_drive();

@@ -1,5 +1,6 @@
 // The noise model and the shares of the variance of a merged bracket.
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -53,7 +54,8 @@ void CompareShares(const Bracket& bracket, std::vector<WorstCase>& cases) {
     const double own = bracket.noise.MeanVariance(expected_dn, kFrames);
     rate.variance =
         Image<float>(kOnePixel, static_cast<float>(1.1 * own / (exposure_s * exposure_s)));
-    meter.Add({&light, &dark, {}}, optics::PixelsOf(rate), expected.pixels());
+    meter.Add({&light, {std::shared_ptr<const optics::DarkFrame>(), &dark}, {}},
+              optics::PixelsOf(rate), expected.pixels());
     const Terms50 terms = TermsOf(bracket, exposure_s, expected_dn, rate.variance.pixels()[0]);
     const Digits50 w = 1 / terms.variance;
     weight += w;

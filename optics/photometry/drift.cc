@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -14,8 +17,9 @@
 namespace eyebox::optics {
 namespace {
 
-constexpr size_t kFewestReadings = 3;
-constexpr size_t kFewestForCurve = 5;
+// Degrees of freedom that a straight line leaves.
+constexpr size_t kFewestForLine = 1;
+constexpr size_t kFewestForCurve = 3;
 constexpr double kHourS = 3600;
 
 // t of 99.73 % by degrees of freedom, from 1 (GUM, table G.2).
@@ -27,10 +31,17 @@ double StudentFor(size_t degrees) {
   return degrees <= kStudent.size() ? kStudent.at(degrees - 1) : kStudentBeyond;
 }
 
+// Readings less a level for each series and a slope.
+size_t DegreesOfLine(std::span<const DriftReading> readings) {
+  std::set<int> series;
+  for (const DriftReading& reading : readings) series.insert(reading.series);
+  return readings.size() < series.size() + 1 ? 0 : readings.size() - series.size() - 1;
+}
+
 absl::Status CheckReadings(std::span<const DriftReading> readings) {
-  if (readings.size() < kFewestReadings) {
+  if (DegreesOfLine(readings) < kFewestForLine) {
     return BadInput("drift", absl::StrCat("has ", readings.size(), " readings"),
-                    "read the reference patch 3 times or more");
+                    "read one and the same patch 3 times or more");
   }
   for (size_t i = 0; i < readings.size(); ++i) {
     const DriftReading& reading = readings[i];
@@ -51,56 +62,127 @@ struct TimeAxis {
   double half_span_s = 0;
 };
 
+bool IsReadAtTwoTimes(std::span<const DriftReading> readings) {
+  std::map<int, double> first_s;
+  return std::ranges::any_of(readings, [&](const DriftReading& reading) {
+    return first_s.try_emplace(reading.series, reading.time_s).first->second != reading.time_s;
+  });
+}
+
 absl::StatusOr<TimeAxis> AxisOf(std::span<const DriftReading> readings) {
   const auto [first, last] = std::ranges::minmax_element(readings, {}, &DriftReading::time_s);
   const double half_span_s = 0.5 * (last->time_s - first->time_s);
-  if (half_span_s <= 0) {
-    return BadInput("drift", "all readings are of one time", "spread them over the recording");
+  if (!IsReadAtTwoTimes(readings)) {
+    return BadInput("drift", "all readings of a patch are of one time",
+                    "spread them over the recording");
   }
   double sum_s = 0;  // from the first, lest large times lose digits
   for (const DriftReading& reading : readings) sum_s += reading.time_s - first->time_s;
   return TimeAxis{first->time_s + sum_s / static_cast<double>(readings.size()), half_span_s};
 }
 
-// b[0] + b[1] x + ...
+// factor(x) = 1 + c[0] x + ..., with a level for every series.
 struct Polynomial {
-  Eigen::VectorXd b;
-  Eigen::MatrixXd covariance;
+  Eigen::VectorXd c;
+  Eigen::MatrixXd covariance;  // of c
   double reduced_chi2 = 0;
   bool borne_out = false;
 };
 
-Polynomial FitPolynomial(std::span<const DriftReading> readings, const TimeAxis& axis, int order) {
-  const auto rows = static_cast<Eigen::Index>(readings.size());
-  Eigen::MatrixXd design(rows, order + 1);
-  Eigen::VectorXd values(rows);
-  for (Eigen::Index i = 0; i < rows; ++i) {
-    const DriftReading& reading = readings[static_cast<size_t>(i)];
-    const double x = (reading.time_s - axis.middle_s) / axis.half_span_s;
-    for (int k = 0; k <= order; ++k) design(i, k) = std::pow(x, k) / reading.sigma;
-    values(i) = reading.value / reading.sigma;
+// The series' levels enter as the factors by which they depart from their weighted means, so that
+// all columns of the design are of one magnitude whatever the units.
+class SeriesFit {
+ public:
+  SeriesFit(std::span<const DriftReading> readings, const TimeAxis& axis, int order)
+      : readings_(readings), order_(order) {
+    for (const DriftReading& reading : readings) {
+      x_.push_back((reading.time_s - axis.middle_s) / axis.half_span_s);
+      levels_[reading.series] = {};
+    }
+    for (const DriftReading& reading : readings) {
+      Level& level = levels_[reading.series];
+      const double weight = 1 / (reading.sigma * reading.sigma);
+      level.sum += weight * reading.value;
+      level.weight += weight;
+    }
+    int column = 0;
+    for (auto& [series, level] : levels_) level.column = column++;
+    parameters_ = Eigen::VectorXd::Ones(column + order);
+    parameters_.tail(order).setZero();
   }
-  const Eigen::MatrixXd inverse = (design.transpose() * design).inverse();
-  Polynomial fit;
-  fit.b = design.colPivHouseholderQr().solve(values);
-  const size_t degrees = readings.size() - static_cast<size_t>(order) - 1;
-  fit.reduced_chi2 = (design * fit.b - values).squaredNorm() / static_cast<double>(degrees);
-  fit.covariance = inverse * std::max(fit.reduced_chi2, 1.0);
-  fit.borne_out =
-      std::abs(fit.b(order)) > StudentFor(degrees) * std::sqrt(fit.covariance(order, order));
-  return fit;
+
+  // Gauss-Newton: the model is a product, hence nearly linear.
+  Polynomial Solve() {
+    constexpr int kMostSteps = 50;
+    constexpr double kSmallStep = 1e-13;
+    for (int i = 0; i < kMostSteps; ++i) {
+      Linearise();
+      const Eigen::VectorXd step = design_.colPivHouseholderQr().solve(residuals_);
+      parameters_ += step;
+      if (step.lpNorm<Eigen::Infinity>() < kSmallStep) break;
+    }
+    Linearise();
+    Polynomial fit;
+    fit.c = parameters_.tail(order_);
+    const size_t degrees = readings_.size() - static_cast<size_t>(parameters_.size());
+    fit.reduced_chi2 = residuals_.squaredNorm() / static_cast<double>(degrees);
+    const Eigen::MatrixXd inverse = (design_.transpose() * design_).inverse();
+    fit.covariance = inverse.bottomRightCorner(order_, order_) * std::max(fit.reduced_chi2, 1.0);
+    const Eigen::Index last = order_ - 1;
+    fit.borne_out =
+        std::abs(fit.c(last)) > StudentFor(degrees) * std::sqrt(fit.covariance(last, last));
+    return fit;
+  }
+
+ private:
+  struct Level {
+    double sum = 0;
+    double weight = 0;
+    Eigen::Index column = 0;
+  };
+
+  void Linearise() {
+    const auto rows = static_cast<Eigen::Index>(readings_.size());
+    design_ = Eigen::MatrixXd::Zero(rows, parameters_.size());
+    residuals_.resize(rows);
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const DriftReading& reading = readings_[static_cast<size_t>(i)];
+      const Level& level = levels_.at(reading.series);
+      const double mean = level.sum / level.weight / reading.sigma;
+      const double x = x_[static_cast<size_t>(i)];
+      double factor = 1;
+      for (int k = 0; k < order_; ++k) {
+        const double power = std::pow(x, k + 1);
+        factor += parameters_(parameters_.size() - order_ + k) * power;
+        design_(i, parameters_.size() - order_ + k) = mean * parameters_(level.column) * power;
+      }
+      design_(i, level.column) = mean * factor;
+      residuals_(i) = reading.value / reading.sigma - mean * parameters_(level.column) * factor;
+    }
+  }
+
+  std::span<const DriftReading> readings_;
+  int order_;
+  std::vector<double> x_;
+  std::map<int, Level> levels_;
+  Eigen::VectorXd parameters_;  // levels, then coefficients
+  Eigen::MatrixXd design_;
+  Eigen::VectorXd residuals_;
+};
+
+Polynomial FitPolynomial(std::span<const DriftReading> readings, const TimeAxis& axis, int order) {
+  return SeriesFit(readings, axis, order).Solve();
 }
 
 void TakeOver(const Polynomial& fit, int order, Drift& drift) {
-  const double level = fit.b(0);
   drift.order = order;
   drift.reduced_chi2 = fit.reduced_chi2;
-  drift.linear = fit.b(1) / level;
-  drift.linear_variance = fit.covariance(1, 1) / (level * level);
+  drift.linear = fit.c(0);
+  drift.linear_variance = fit.covariance(0, 0);
   if (order < 2) return;
-  drift.quadratic = fit.b(2) / level;
-  drift.quadratic_variance = fit.covariance(2, 2) / (level * level);
-  drift.covariance = fit.covariance(1, 2) / (level * level);
+  drift.quadratic = fit.c(1);
+  drift.quadratic_variance = fit.covariance(1, 1);
+  drift.covariance = fit.covariance(0, 1);
 }
 
 }  // namespace
@@ -139,7 +221,7 @@ absl::StatusOr<Drift> FitDrift(std::span<const DriftReading> readings) {
   TakeOver(line, 1, drift);
   drift.per_hour = drift.linear / axis.half_span_s * kHourS;
   drift.per_hour_sigma = std::sqrt(drift.linear_variance) / axis.half_span_s * kHourS;
-  if (readings.size() >= kFewestForCurve) {
+  if (DegreesOfLine(readings) >= kFewestForCurve) {
     const Polynomial curve = FitPolynomial(readings, axis, 2);
     if (curve.borne_out) {
       TakeOver(curve, 2, drift);

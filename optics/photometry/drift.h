@@ -1,4 +1,4 @@
-// How the light of a display drifted while it was measured, from one patch that was read again and
+// How the light of a display drifted while it was measured, from patches that were read again and
 // again: a polynomial in time of order 0, 1 or 2, whichever the readings bear out.
 #ifndef EYEBOX_OPTICS_PHOTOMETRY_DRIFT_H_
 #define EYEBOX_OPTICS_PHOTOMETRY_DRIFT_H_
@@ -14,6 +14,7 @@ struct DriftReading {
   double time_s = 0;  // of any clock that does not jump
   double value = 0;   // any unit that is proportional to light, above 0
   double sigma = 0;   // standard uncertainty of its own, above 0
+  int series = 0;     // readings of one patch by one instrument: their level is one unknown
 };
 
 // factor(t) = 1 + linear x + quadratic x^2, x = (t - middle_s) / half_span_s: what the display gave
@@ -42,11 +43,12 @@ struct Drift {
   double Span() const;
 };
 
-// Weighted least squares. Where the readings scatter by more than their sigmas say, the scatter
-// counts. An order is borne out if its highest coefficient differs from 0 at 99.73 % by Student's
-// t (GUM, table G.2); order 2 needs 5 readings.
-// Errors: InvalidArgument (fewer than 3 readings, one that is not finite or not above 0, all at one
-// time).
+// Weighted least squares of value = level of its series times factor(t). Where the readings scatter
+// by more than their sigmas say, the scatter counts. An order is borne out if its highest
+// coefficient differs from 0 at 99.73 % by Student's t (GUM, table G.2). Order 1 needs 2 readings
+// more than there are series, order 2 needs 4.
+// Errors: InvalidArgument (too few readings, one that is not finite or not above 0, no series with
+// readings of two times).
 absl::StatusOr<Drift> FitDrift(std::span<const DriftReading> readings);
 
 // Divides by the factor at `time_s`. The uncertainty of the factor is common to all pixels: it adds

@@ -1,4 +1,5 @@
-// The drift of the display while it was measured, from the reference patch of the recording.
+// The drift of the display while it was measured, from the reference patch of the recording and
+// from the photodiode.
 #ifndef EYEBOX_SERVICE_STEPS_DRIFT_H_
 #define EYEBOX_SERVICE_STEPS_DRIFT_H_
 
@@ -16,8 +17,10 @@ struct MeasuredDrift {
   std::vector<std::string> warnings;  // what was found, or why nothing could be
 };
 
-// Fits the captures of role kReference: mean count of the frames above the dark of their setting,
-// at the time of their first frame. A recording without references has no drift and no warning.
+// Fits what the two sources of drift_sources.h saw, together where they agree within 4 sigma. Where
+// they do not, the camera's alone: whatever drifts, display or camera, it is the camera's levels
+// that are corrected. Captures whose light departs from that of their stimulus are named in a
+// warning. A recording without either source has no drift and no warning.
 // Errors: those of reading.
 absl::StatusOr<MeasuredDrift> MeasureDrift(capture::RecordingReader& recording);
 

@@ -65,6 +65,36 @@ TEST(Drift, WarmingUpBends) {
   EXPECT_GT(drift->SigmaAt(drift->middle_s + drift->half_span_s), 0);
 }
 
+TEST(Drift, SeriesOfSeveralLevelsAreFittedTogether) {
+  const auto factor = [](double x) { return 1 - 0.03 * x; };
+  const auto all = Readings(12, 1e-3, 8, factor);
+  std::vector<DriftReading> readings;
+  constexpr double kLevels[] = {1, 40, 0.01};
+  for (size_t i = 0; i < all.size(); ++i) {
+    const int series = static_cast<int>(i % 3);
+    const double level = kLevels[series];
+    readings.push_back({all[i].time_s, level * all[i].value, level * all[i].sigma, series});
+  }
+  const auto drift = FitDrift(readings);
+  ASSERT_TRUE(drift.ok()) << drift.status();
+  ASSERT_EQ(drift->order, 1);
+  const double sigma = std::sqrt(drift->linear_variance);
+  EXPECT_NEAR(drift->linear, -0.03, 3 * sigma);
+  const auto alone = *FitDrift(all);
+  EXPECT_GT(sigma, std::sqrt(alone.linear_variance) / std::sqrt(std::max(alone.reduced_chi2, 1.0)));
+  EXPECT_LT(sigma, 2 * std::sqrt(alone.linear_variance));
+}
+
+TEST(Drift, ASecondSeriesOfOneReadingTellsNothing) {
+  const auto readings = Readings(7, 1e-3, 3, [](double x) { return 1 - 0.03 * x; });
+  const auto without = *FitDrift(readings);
+  auto more = readings;
+  more.push_back({readings[3].time_s, 500, 1, 1});
+  const auto with = *FitDrift(more);
+  EXPECT_NEAR(with.linear, without.linear, 1e-12);
+  EXPECT_NEAR(with.linear_variance, without.linear_variance, 1e-12);
+}
+
 TEST(Drift, NoiseIsNoDrift) {
   int found = 0;
   for (uint64_t seed = 0; seed < 2000; ++seed) {
@@ -155,6 +185,9 @@ TEST(Drift, BadReadingsAreRefused) {
     EXPECT_THAT(message({good[0], good[1], bad}), HasSubstr("reading 3"));
   }
   EXPECT_THAT(message({good[0], good[0], good[0]}), HasSubstr("one time"));
+  DriftReading other = good[3];
+  other.series = 1;
+  EXPECT_THAT(message({good[0], good[0], good[0], other, other}), HasSubstr("one time"));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "capture/camera/sim/display.h"
 #include "capture/camera/sim/sim_rig.h"
 #include "capture/plan.h"
 #include "service/steps/calibrate.h"
@@ -14,6 +15,7 @@
 #include "service/steps/levels.h"
 #include "service/steps/record_plan.h"
 #include "tests/support/restless_display.h"
+#include "tests/support/restless_photodiode.h"
 #include "tests/support/temporary_folder.h"
 
 namespace eyebox::service {
@@ -23,6 +25,7 @@ using capture::DisplayFault;
 using capture::DisplayMoment;
 using testing::AllOf;
 using testing::Contains;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -30,8 +33,10 @@ using testing::Not;
 class DriftStep : public testing::Test {
  protected:
   // Every frame takes 10 ms of the clock. `lost_per_s` of the light is lost in a second.
+  // `photodiode`, where there is one, tells what of the light it sees.
   std::unique_ptr<capture::RecordingReader> Record(const std::string& name, double lost_per_s,
-                                                   int reference_every = 2) {
+                                                   int reference_every = 2,
+                                                   const capture::LightAt& photodiode = {}) {
     ManualClock clock;
     capture::SimParameters parameters;
     auto rig = OpenSimRig({.name = "test", .camera_uri = "sim:rift-s-like", .seed = 5}, parameters,
@@ -41,6 +46,7 @@ class DriftStep : public testing::Test {
       return DisplayFault{.factor = 1 - lost_per_s * static_cast<double>(moment.now_ns) / 1e9};
     };
     capture::MakeRestless(*rig, clock, parameters.sensor.bias_dn, fault);
+    if (photodiode) capture::AddPhotodiode(*rig, clock, photodiode, 0.5);
     capture::PlanOptions plan;
     plan.levels = 9;
     plan.dark_repeats = plan.flat_repeats = 4;
@@ -48,6 +54,15 @@ class DriftStep : public testing::Test {
     const auto report = RecordPlan(*rig, *capture::MakeGreyPlan(plan), folder_.path() / name, {});
     EXPECT_TRUE(report.ok()) << report.status();
     return *capture::RecordingReader::Open(folder_.path() / name);
+  }
+
+  // A photodiode that sees the display's own drift, or another.
+  static capture::LightAt Sees(double lost_per_s) {
+    return [lost_per_s](const CaptureSpec& shown, int64_t now_ns) {
+      const double luminance =
+          DisplayLuminance(capture::DisplayParameters{}, shown.stimulus.drive.value_or(DriveRgb{}));
+      return 50 * luminance * (1 - lost_per_s * static_cast<double>(now_ns) / 1e9);
+    };
   }
 
   static MeasuredLevels Reduce(capture::RecordingReader& recording) {
@@ -128,6 +143,76 @@ TEST_F(DriftStep, TooFewReferencesAreSaid) {
   ASSERT_TRUE(measured.ok()) << measured.status();
   EXPECT_EQ(measured->drift.order, 0);
   EXPECT_THAT(measured->warnings, Contains(HasSubstr("2 references")));
+}
+
+TEST_F(DriftStep, APhotodiodeSharpensWhatTheReferencesSay) {
+  const auto alone = *MeasureDrift(*Record("alone", 0.08));
+  const auto both = *MeasureDrift(*Record("both", 0.08, 2, Sees(0.08)));
+  ASSERT_EQ(both.drift.order, 1);
+  EXPECT_LT(both.drift.per_hour_sigma, 0.7 * alone.drift.per_hour_sigma);
+  const double middle = 1 - 0.08 * both.drift.middle_s;
+  EXPECT_NEAR(both.drift.per_hour, -0.08 * 3600 / middle, 4 * both.drift.per_hour_sigma);
+  EXPECT_THAT(both.warnings,
+              ElementsAre(HasSubstr("seen by the reference patch and the photodiode")));
+}
+
+TEST_F(DriftStep, APhotodiodeAloneSeesItOnWhateverIsShownTwice) {
+  const auto recording = Record("without references", 0.08, 0, Sees(0.08));
+  const auto measured = *MeasureDrift(*recording);
+  ASSERT_EQ(measured.drift.order, 1) << measured.drift.per_hour_sigma;
+  const double middle = 1 - 0.08 * measured.drift.middle_s;
+  EXPECT_NEAR(measured.drift.per_hour, -0.08 * 3600 / middle, 4 * measured.drift.per_hour_sigma);
+  EXPECT_THAT(measured.warnings, ElementsAre(HasSubstr("seen by the photodiode")));
+  const auto [low, high] = Ratios(Reduce(*recording), Reduce(*Record("steady", 0)));
+  EXPECT_LT(high / low, 1.01);
+}
+
+TEST_F(DriftStep, APhotodiodeThatDriftsByItselfIsNotBelieved) {
+  const auto alone = *MeasureDrift(*Record("alone", 0.08));
+  const auto measured = *MeasureDrift(*Record("apart", 0.08, 2, Sees(0.02)));
+  EXPECT_EQ(measured.drift.per_hour, alone.drift.per_hour);
+  EXPECT_THAT(measured.warnings, Contains(AllOf(HasSubstr("one of the two instruments drifts"),
+                                                HasSubstr("the camera's was taken"))));
+}
+
+TEST_F(DriftStep, ACaptureInWhichTheDisplayDimmedIsNamed) {
+  int bright = 0;
+  const auto dims = [&bright, sees = Sees(0)](const CaptureSpec& shown, int64_t now_ns) {
+    static constexpr DriveRgb kWhite = {1, 1, 1};
+    const bool dimmed = shown.stimulus.drive == kWhite && shown.exposure_s > 0.4;
+    bright += dimmed ? 1 : 0;
+    return sees(shown, now_ns) * (dimmed ? 0.93 : 1);
+  };
+  const auto measured = *MeasureDrift(*Record("dims", 0, 2, dims));
+  ASSERT_GT(bright, 0);
+  EXPECT_EQ(measured.drift.order, 0);
+  EXPECT_THAT(measured.warnings, Contains(AllOf(HasSubstr("the photodiode saw -"),
+                                                HasSubstr("in capture"), HasSubstr("settle"))));
+}
+
+TEST_F(DriftStep, ASteadyDisplayGetsNoWarningFromAPhotodiode) {
+  const auto measured = *MeasureDrift(*Record("steady", 0, 2, Sees(0)));
+  EXPECT_EQ(measured.drift.order, 0);
+  EXPECT_THAT(measured.warnings, IsEmpty());
+}
+
+TEST_F(DriftStep, FlashesOutOfStepWithTheCapturesAreNoDrift) {
+  const auto flashes = [sees = Sees(0.08)](const CaptureSpec& shown, int64_t now_ns) {
+    return now_ns % 11'000'000 < 2'200'000 ? 5 * sees(shown, now_ns) : 0;
+  };
+  const auto alone = *MeasureDrift(*Record("alone", 0.08));
+  const auto both = *MeasureDrift(*Record("both", 0.08, 2, flashes));
+  EXPECT_EQ(both.drift.order, 1);
+  EXPECT_NEAR(both.drift.per_hour, alone.drift.per_hour, 4 * both.drift.per_hour_sigma);
+  EXPECT_THAT(both.warnings, ElementsAre(HasSubstr("seen by")));
+}
+
+TEST_F(DriftStep, AClippedPhotodiodeIsNotUsed) {
+  const auto clipped = [](const CaptureSpec&, int64_t) { return 1e5; };
+  const auto measured = *MeasureDrift(*Record("clipped", 0, 0, clipped));
+  EXPECT_EQ(measured.drift.order, 0);
+  EXPECT_THAT(measured.warnings,
+              ElementsAre(AllOf(HasSubstr("by the photodiode"), HasSubstr("too few stimuli"))));
 }
 
 TEST_F(DriftStep, WithoutReferencesThereIsNothingToSay) {

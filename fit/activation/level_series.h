@@ -23,6 +23,7 @@ struct LevelSeries {
   double scale_relative_sigma = 0;     // common to all readings, not in their sigma
   std::string source;                  // a file or recording, for messages
   double flat_relative_sigma = 0;      // the flat's part of scale_relative_sigma
+  double scatter_relative_sigma = 0;   // likewise of scattered light that was taken out
 
   // Errors: InvalidArgument naming source and reading (drive outside [0, 1], drives not ascending,
   // luminance or sigma negative or not finite, fewer than 4 different drives) or the source (a flat

@@ -98,8 +98,12 @@ absl::StatusOr<std::vector<BudgetTerm>> BudgetTerms(const ActivationFit& fit,
   }
   const double flat = std::min(series.flat_relative_sigma, series.scale_relative_sigma);
   const double scale = series.scale_relative_sigma;
+  const double apart_from_flat = std::sqrt((scale - flat) * (scale + flat));
+  const double scatter = std::min(series.scatter_relative_sigma, apart_from_flat);
   terms.push_back({"flat", {}, flat});
-  terms.push_back({"scale", {}, std::sqrt((scale - flat) * (scale + flat))});
+  terms.push_back({"scatter_common", {}, scatter});
+  terms.push_back(
+      {"scale", {}, std::sqrt((apart_from_flat - scatter) * (apart_from_flat + scatter))});
   std::erase_if(terms, IsNothing);
   return terms;
 }

@@ -29,8 +29,8 @@ struct ReadingShares {
 // The terms of `fit`, whose series it came from. With the shares of each reading ([readings], or
 // empty): photon, read, quantisation, dark, linearity, scatter and drift; without them "reading",
 // the stated sigma. A fit without measured sigmas has "residual_scatter" instead, what its own
-// residuals show. "lack_of_fit" is what residuals show beyond the sigmas; "flat" and "scale" are
-// common to all readings. Together they make up the covariance of the fit.
+// residuals show. "lack_of_fit" is what residuals show beyond the sigmas; "flat", "scatter_common"
+// and "scale" are common to all readings. Together they make up the covariance of the fit.
 // Errors: InvalidArgument (another number of shares or readings than the fit has).
 absl::StatusOr<std::vector<BudgetTerm>> BudgetTerms(const ActivationFit& fit,
                                                     const LevelSeries& series,

@@ -240,6 +240,7 @@ void CorrectDrift(const Drift& drift, double time_s, LuminanceImage& image) {
   const auto inverse = static_cast<float>(1 / factor);
   for (float& value : image.image.value.pixels()) value *= inverse;
   for (float& variance : image.image.variance.pixels()) variance *= inverse * inverse;
+  for (float& sigma : image.scatter_sigma.pixels()) sigma *= inverse;
   const double relative_sigma = drift.SigmaAt(time_s) / factor;
   image.scale_relative_sigma = std::hypot(image.scale_relative_sigma, relative_sigma);
   image.image.history.push_back(

@@ -27,8 +27,8 @@ struct ExposureShare {
   double valid = 0;         // share of pixels that entered the merge
 };
 
-// Mean over the valid pixels of each term's part of the variance of the image. All but `scale` sum
-// to 1: the error of the scale is common to all pixels and not part of their variance.
+// Mean over the valid pixels of each term's part of the variance of the image. All but `scale` and
+// `scatter_common` sum to 1: those errors are common to all pixels and not part of their variance.
 struct VarianceBudget {
   double photon = 0;  // shot noise of the light
   double read = 0;
@@ -37,6 +37,8 @@ struct VarianceBudget {
   double flat = 0;
   double linearity = 0;  // of the linearity correction
   double scatter = 0;    // what the correction for scattered light added
+  // What it added that all pixels share, over the variance of a pixel; like `scale` no part of it.
+  double scatter_common = 0;
   // Variance of the luminance scale and of the corrections for drift, over that of a pixel.
   double scale = 0;
 };

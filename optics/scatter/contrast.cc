@@ -14,25 +14,18 @@ namespace {
 
 constexpr double kNoiseSigmas = 3;
 
-struct Mean {
-  double value = 0;
-  double sigma = 0;
-};
-
-absl::StatusOr<Mean> MeanOver(const LuminanceImage& image, const MeasuringDisk& disk) {
-  EYEBOX_ASSIGN_OR_RETURN(const PatchMean patch, MeanOverDisk(image.image, disk.centre.x_px,
-                                                              disk.centre.y_px, disk.radius_px));
-  return Mean{patch.value, patch.sigma};
+absl::StatusOr<PatchMean> MeanOver(const LuminanceImage& image, const MeasuringDisk& disk) {
+  return MeanOverDisk(image, disk.centre.x_px, disk.centre.y_px, disk.radius_px);
 }
 
-absl::Status CheckBright(const Mean& bright, const char* what) {
+absl::Status CheckBright(const PatchMean& bright, const char* what) {
   if (bright.value > kNoiseSigmas * bright.sigma) return absl::OkStatus();
   return Rejected(what, absl::StrCat("luminance ", bright.value, " with sigma ", bright.sigma),
                   "expose longer, or look whether the display was on");
 }
 
 // `glare_share`: of the bright luminance, what the instrument lays over the dark.
-ContrastFigure MakeContrast(const Mean& bright, const Mean& dark, double glare_share) {
+ContrastFigure MakeContrast(const PatchMean& bright, const PatchMean& dark, double glare_share) {
   ContrastFigure figure;
   figure.bright = bright.value;
   figure.dark = dark.value;
@@ -44,7 +37,7 @@ ContrastFigure MakeContrast(const Mean& bright, const Mean& dark, double glare_s
     return figure;
   }
   figure.contrast = bright.value / dark.value;
-  figure.sigma = figure.contrast * std::hypot(bright.sigma / bright.value, dark.sigma / dark.value);
+  figure.sigma = SigmaOfRatio(bright, dark);
   return figure;
 }
 
@@ -73,15 +66,38 @@ bool IsBright(const Checkerboard& board, int column, int row) {
 }
 
 struct BoardMeans {
-  Mean bright;
-  Mean dark;
+  PatchMean bright;
+  PatchMean dark;
 };
 
-// Each square counts alike; independent noise.
-absl::StatusOr<BoardMeans> MeasureSquares(const MeasuredImage& image, const Checkerboard& board) {
-  BoardMeans means;
-  int bright = 0;
-  int dark = 0;
+// Of squares that count alike: their noise is independent, what they share of scattered light is
+// not.
+class SquareMean {
+ public:
+  void Add(const PatchMean& patch) {
+    ++squares_;
+    value_ += patch.value;
+    noise_variance_ += patch.NoiseVariance();
+    scatter_sigma_ += patch.scatter_sigma;
+  }
+  PatchMean Get() const {
+    PatchMean mean;
+    mean.value = value_ / squares_;
+    mean.scatter_sigma = scatter_sigma_ / squares_;
+    mean.sigma = std::hypot(std::sqrt(noise_variance_) / squares_, mean.scatter_sigma);
+    return mean;
+  }
+
+ private:
+  int squares_ = 0;
+  double value_ = 0;
+  double noise_variance_ = 0;
+  double scatter_sigma_ = 0;
+};
+
+absl::StatusOr<BoardMeans> MeasureSquares(const LuminanceImage& image, const Checkerboard& board) {
+  SquareMean bright;
+  SquareMean dark;
   const double radius = board.measured_fraction * board.square_px / 2;
   for (int row = 0; row < board.rows; ++row) {
     for (int column = 0; column < board.columns; ++column) {
@@ -89,24 +105,19 @@ absl::StatusOr<BoardMeans> MeasureSquares(const MeasuredImage& image, const Chec
           const PatchMean patch,
           MeanOverDisk(image, board.corner.x_px + (column + 0.5) * board.square_px,
                        board.corner.y_px + (row + 0.5) * board.square_px, radius));
-      const bool is_bright = IsBright(board, column, row);
-      Mean& mean = is_bright ? means.bright : means.dark;
-      ++(is_bright ? bright : dark);
-      mean.value += patch.value;
-      mean.sigma = std::hypot(mean.sigma, patch.sigma);
+      (IsBright(board, column, row) ? bright : dark).Add(patch);
     }
   }
-  means.bright = {means.bright.value / bright, means.bright.sigma / bright};
-  means.dark = {means.dark.value / dark, means.dark.sigma / dark};
-  return means;
+  return BoardMeans{bright.Get(), dark.Get()};
 }
 
 // Dark over bright, of a board without any light in its dark squares.
 absl::StatusOr<double> GlareShare(ImageSize size, const Checkerboard& board,
                                   const InstrumentGlare& instrument) {
-  MeasuredImage seen = MakeMeasuredImage(size, "relative");
-  EYEBOX_ASSIGN_OR_RETURN(seen.value, SpreadLight(DrawCheckerboard(size, board),
-                                                  instrument.pitch_deg, instrument.kernel));
+  LuminanceImage seen;
+  seen.image = MakeMeasuredImage(size, "relative");
+  EYEBOX_ASSIGN_OR_RETURN(seen.image.value, SpreadLight(DrawCheckerboard(size, board),
+                                                        instrument.pitch_deg, instrument.kernel));
   EYEBOX_ASSIGN_OR_RETURN(const BoardMeans means, MeasureSquares(seen, board));
   return std::max(means.dark.value, 0.0) / means.bright.value;
 }
@@ -131,8 +142,8 @@ void DrawSquare(double left, double top, double side, Image<float>& image) {
 absl::StatusOr<ContrastFigure> FullFieldContrast(const LuminanceImage& white,
                                                  const LuminanceImage& black,
                                                  const MeasuringDisk& disk) {
-  EYEBOX_ASSIGN_OR_RETURN(const Mean bright, MeanOver(white, disk));
-  EYEBOX_ASSIGN_OR_RETURN(const Mean dark, MeanOver(black, disk));
+  EYEBOX_ASSIGN_OR_RETURN(const PatchMean bright, MeanOver(white, disk));
+  EYEBOX_ASSIGN_OR_RETURN(const PatchMean dark, MeanOver(black, disk));
   EYEBOX_RETURN_IF_ERROR(CheckBright(bright, "white field"));
   return MakeContrast(bright, dark, 0);
 }
@@ -141,7 +152,7 @@ absl::StatusOr<ContrastFigure> CheckerboardContrast(
     const LuminanceImage& image, const Checkerboard& board,
     const std::optional<InstrumentGlare>& instrument) {
   EYEBOX_RETURN_IF_ERROR(CheckBoard(image.image.size(), board));
-  EYEBOX_ASSIGN_OR_RETURN(const BoardMeans means, MeasureSquares(image.image, board));
+  EYEBOX_ASSIGN_OR_RETURN(const BoardMeans means, MeasureSquares(image, board));
   EYEBOX_RETURN_IF_ERROR(CheckBright(means.bright, "bright squares"));
   double glare_share = 0;
   if (instrument.has_value()) {
@@ -165,12 +176,12 @@ Image<float> DrawCheckerboard(ImageSize size, const Checkerboard& board) {
 absl::StatusOr<GlareFigure> BlackSpotGlare(const LuminanceImage& with_spot,
                                            const LuminanceImage& field, const BlackSpot& spot,
                                            const std::optional<ScatterKernel>& instrument) {
-  EYEBOX_ASSIGN_OR_RETURN(const Mean dark, MeanOver(with_spot, spot.disk));
-  EYEBOX_ASSIGN_OR_RETURN(const Mean bright, MeanOver(field, spot.disk));
+  EYEBOX_ASSIGN_OR_RETURN(const PatchMean dark, MeanOver(with_spot, spot.disk));
+  EYEBOX_ASSIGN_OR_RETURN(const PatchMean bright, MeanOver(field, spot.disk));
   EYEBOX_RETURN_IF_ERROR(CheckBright(bright, "bright field"));
   GlareFigure figure;
   figure.share = dark.value / bright.value;
-  figure.sigma = std::hypot(dark.sigma, figure.share * bright.sigma) / bright.value;
+  figure.sigma = SigmaOfRatio(dark, bright);
   if (instrument.has_value()) {
     const SpotPhotometer eye{*instrument, 0};
     EYEBOX_ASSIGN_OR_RETURN(const double spot_only,

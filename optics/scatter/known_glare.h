@@ -26,6 +26,7 @@ struct GlareRemovalFigures {
                                  // ScatterCorrection
   double below_floor_share = 0;  // of the valid pixels
   double variance_share = 0;     // of the mean variance, what the correction added
+  double common_share = 0;       // mean square of scatter_sigma over that variance
 };
 
 }  // namespace eyebox::optics

@@ -58,22 +58,31 @@ double Median(std::vector<float> values) {
   return *middle;
 }
 
-// Fills the variance and the figures; the value stands already.
+// Fills the variances and the figures; the value stands already.
 void Account(const MeasuredImage& before, const CorrectionOptions& options, GlareRemoval& removal) {
   MeasuredImage& after = removal.luminance.image;
+  Image<float>& common = removal.luminance.scatter_sigma;
+  common = Image<float>(after.size(), kNoValue);
   const double sigma_of_floor = options.floor_tolerance / options.floor_sigmas;
-  double read = 0, left = 0, variance_before = 0, variance_after = 0;
+  double read = 0, left = 0, variance_before = 0, variance_after = 0, common_squares = 0;
   std::vector<float> floors;
   size_t below = 0;
   for (size_t i = 0; i < after.value.pixels().size(); ++i) {
     if (after.mask.pixels()[i] != 0) continue;
     const float floor = removal.floor.pixels()[i];
-    const double sigma = sigma_of_floor * floor;
-    after.variance.pixels()[i] = static_cast<float>(sigma * sigma);
+    const double whole = sigma_of_floor * floor;
+    const double shared =
+        options.glare_relative_sigma * (before.value.pixels()[i] - after.value.pixels()[i]);
+    // Single precision may lose the difference where the kernel is nearly all of the variance.
+    const double own =
+        std::max(whole * whole - shared * shared, static_cast<double>(before.variance.pixels()[i]));
+    after.variance.pixels()[i] = static_cast<float>(own);
+    common.pixels()[i] = static_cast<float>(shared);
     read += before.value.pixels()[i];
     left += after.value.pixels()[i];
     variance_before += before.variance.pixels()[i];
-    variance_after += sigma * sigma;
+    variance_after += own;
+    common_squares += shared * shared;
     floors.push_back(floor);
     below += after.value.pixels()[i] < floor ? 1 : 0;
   }
@@ -82,6 +91,7 @@ void Account(const MeasuredImage& before, const CorrectionOptions& options, Glar
   figures.removed_share = read != 0 ? 1 - left / read : 0;
   figures.below_floor_share = static_cast<double>(below) / static_cast<double>(floors.size());
   figures.variance_share = std::max(1 - variance_before / variance_after, 0.0);
+  figures.common_share = variance_after > 0 ? common_squares / variance_after : 0;
   figures.floor_median = Median(std::move(floors));
 }
 

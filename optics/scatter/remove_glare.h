@@ -9,8 +9,9 @@
 namespace eyebox::optics {
 
 struct GlareRemoval {
-  // Its variance counts noise, the uncertainty of the kernel times the glare that was removed, and
-  // glare from light that had to be guessed. The latter two are alike in neighbouring pixels.
+  // Its variance counts noise, and glare from light that had to be guessed, which is alike in
+  // neighbouring pixels. The uncertainty of the kernel times the glare that was removed stands in
+  // scatter_sigma.
   LuminanceImage luminance;
   Image<float> floor;  // see ScatterCorrection
   GlareRemovalFigures figures;

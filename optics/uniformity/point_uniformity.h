@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "optics/photometry/luminance_image.h"
 #include "optics/reduce/measured_image.h"
 
 namespace eyebox::optics {
@@ -17,25 +18,34 @@ struct PatchMean {
   double x_px = 0;
   double y_px = 0;
   double value = 0;
-  double sigma = 0;
+  double sigma = 0;          // with that of the scattered light
+  double scatter_sigma = 0;  // of the scattered light alone, see LuminanceImage
   size_t pixels = 0;
+
+  double NoiseVariance() const { return sigma * sigma - scatter_sigma * scatter_sigma; }
 };
 
 struct PointUniformity {
   std::vector<PatchMean> patches;  // rows from the top, left to right; then the four inner ones
   double uniformity = 0;           // min / max
   double nonuniformity = 0;        // 1 - min / max
-  double sigma = 0;                // standard uncertainty of either, from noise
+  double sigma = 0;                // standard uncertainty of either, from noise and scattered light
 };
+
+// Standard uncertainty of numerator / denominator, of which scattered light's error is the same
+// number in both.
+double SigmaOfRatio(const PatchMean& numerator, const PatchMean& denominator);
 
 // Errors: FailedPrecondition (no valid pixel in the disk).
 absl::StatusOr<PatchMean> MeanOverDisk(const MeasuredImage& image, double x_px, double y_px,
+                                       double radius_px);
+absl::StatusOr<PatchMean> MeanOverDisk(const LuminanceImage& luminance, double x_px, double y_px,
                                        double radius_px);
 
 enum class PointPattern { kNine, kThirteen };
 
 // Errors: those of MeanOverDisk; FailedPrecondition (largest patch not above 0).
-absl::StatusOr<PointUniformity> MeasurePointUniformity(const MeasuredImage& image,
+absl::StatusOr<PointUniformity> MeasurePointUniformity(const LuminanceImage& luminance,
                                                        PointPattern pattern, double radius_px);
 
 }  // namespace eyebox::optics

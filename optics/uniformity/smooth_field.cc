@@ -184,8 +184,8 @@ Image<float> SmoothField::Values() const { return MapOf(*this, FillValues); }
 
 Image<float> SmoothField::Sigmas() const { return MapOf(*this, FillSigmas); }
 
-absl::StatusOr<SmoothField> FitSmoothField(const MeasuredImage& image, FieldModel model,
-                                           int order) {
+absl::StatusOr<SmoothField> FitSmoothField(const MeasuredImage& image, FieldModel model, int order,
+                                           const Image<float>& shared_sigma) {
   EYEBOX_RETURN_IF_ERROR(CheckOrder(model, order));
   const FieldBasis basis(model, order, image.size());
   const NormalEquations equations = std::move(SumImage(image, basis, 1).front());
@@ -213,6 +213,13 @@ absl::StatusOr<SmoothField> FitSmoothField(const MeasuredImage& image, FieldMode
   const double chi2 = std::max(equations.Chi2(field.coefficients), 0.0);
   field.reduced_chi2 = equations.pixels > n ? chi2 / static_cast<double>(equations.pixels - n) : 0;
   covariance *= std::max(field.reduced_chi2, 1.0);
+  if (!shared_sigma.empty()) {
+    const MeasuredImage shared{shared_sigma, image.variance, image.mask};
+    const NormalEquations with = std::move(SumImage(shared, basis, 1).front());
+    const Eigen::VectorXd moved =
+        factors.solve(Eigen::Map<const Eigen::VectorXd>(with.right_side.data(), count));
+    covariance += moved * moved.transpose();
+  }
   field.covariance.assign(covariance.data(), covariance.data() + covariance.size());
   return field;
 }

@@ -19,7 +19,7 @@ struct SmoothField {
   int order = 0;                     // of a spline: intervals along the longer side
   std::vector<double> coefficients;  // n; of a polynomial (order + 1) (order + 2) / 2
   std::vector<double> covariance;    // [n, n] row-major
-  double reduced_chi2 = 0;           // of the fit; above 1 the covariance has been scaled by it
+  double reduced_chi2 = 0;  // of the fit; above 1 the covariance of noise has been scaled by it
 
   double At(double x_px, double y_px) const;
   double SigmaAt(double x_px, double y_px) const;  // standard uncertainty
@@ -28,10 +28,12 @@ struct SmoothField {
   Image<float> Sigmas() const;
 };
 
-// Least squares weighted with 1/variance over the valid pixels.
+// Least squares weighted with 1/variance over the valid pixels. `shared_sigma`, unless empty, is an
+// error that all pixels share, as LuminanceImage::scatter_sigma: it passes through the same fit.
 // Errors: InvalidArgument (order outside 0 to 8, intervals outside 1 to 16), FailedPrecondition
 // (fewer valid pixels than coefficients, or a singular system: a function without a valid pixel).
-absl::StatusOr<SmoothField> FitSmoothField(const MeasuredImage& image, FieldModel model, int order);
+absl::StatusOr<SmoothField> FitSmoothField(const MeasuredImage& image, FieldModel model, int order,
+                                           const Image<float>& shared_sigma = {});
 
 // Divided by its value at a point, which becomes 1 with no uncertainty.
 // Errors: FailedPrecondition (value there not above 0).

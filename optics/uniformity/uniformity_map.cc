@@ -36,12 +36,15 @@ absl::StatusOr<Disk> ReferenceDisk(ImageSize size, const UniformityOptions& opti
 }
 
 // g = L / R, var g = (var L + g^2 var R - 2 g cov(L, R)) / R^2. Inside the disk R contains the
-// pixel itself with weight 1/n, hence cov(L, R) = var L / n.
-MeasuredImage RatioToReference(const MeasuredImage& luminance, const Disk& disk,
-                               const PatchMean& reference) {
-  MeasuredImage ratio = luminance;
+// pixel itself with weight 1/n, hence cov(L, R) = var L / n. What all pixels share of scattered
+// light, s, shifts g by (s - g s_R) / R.
+void RatioToReference(const LuminanceImage& luminance, const Disk& disk, const PatchMean& reference,
+                      UniformityMap& map) {
+  MeasuredImage& ratio = map.raw;
+  ratio = luminance.image;
+  map.scatter_sigma = luminance.scatter_sigma;
   const double per_reference = 1 / reference.value;
-  const double reference_variance = reference.sigma * reference.sigma;
+  const double reference_variance = reference.NoiseVariance();
   for (int y = 0; y < ratio.size().height_px; ++y) {
     const bool near = std::abs(y - disk.centre.y_px) <= disk.radius_px;
     const auto value = ratio.value.row(y);
@@ -50,7 +53,13 @@ MeasuredImage RatioToReference(const MeasuredImage& luminance, const Disk& disk,
       const double g = value[x] * per_reference;
       const double shared =
           near && disk.Holds(x, y) ? 2 * g / static_cast<double>(reference.pixels) : 0;
-      const double sum = variance[x] * (1 - shared) + g * g * reference_variance;
+      double sum = variance[x] * (1 - shared) + g * g * reference_variance;
+      if (!map.scatter_sigma.empty()) {
+        float& scatter = map.scatter_sigma.at(x, y);
+        const double shift = scatter - g * reference.scatter_sigma;
+        scatter = static_cast<float>(shift * per_reference);
+        sum += shift * shift;
+      }
       value[x] = static_cast<float>(g);
       variance[x] = static_cast<float>(sum * per_reference * per_reference);
     }
@@ -58,7 +67,6 @@ MeasuredImage RatioToReference(const MeasuredImage& luminance, const Disk& disk,
   ratio.unit = "1";
   ratio.history.push_back(absl::StrCat("RatioToReference(point (", disk.centre.x_px, ", ",
                                        disk.centre.y_px, "), radius ", disk.radius_px, " px)"));
-  return ratio;
 }
 
 // The size that predicts best balances what it cannot follow against noise, and its sigmas know of
@@ -76,8 +84,10 @@ int SizeAbove(const std::vector<CrossValidated>& tried, const CrossValidated& be
 
 // Both kinds of smooth model, of the size asked for, else a little above their best one; the kind
 // that predicts better first. With a size given, that kind is taken.
-absl::Status FitSmoothModels(const MeasuredImage& luminance, const UniformityOptions& options,
+absl::Status FitSmoothModels(const LuminanceImage& full_field, const UniformityOptions& options,
                              const PixelPoint& reference, UniformityMap& map) {
+  const MeasuredImage& luminance = full_field.image;
+  const Image<float>& scatter = full_field.scatter_sigma;
   EYEBOX_ASSIGN_OR_RETURN(map.choice, CrossValidate(luminance));
   const int order = options.polynomial_order.value_or(
       SizeAbove(map.choice.polynomials, map.choice.polynomial, kOrdersAboveBest));
@@ -86,11 +96,11 @@ absl::Status FitSmoothModels(const MeasuredImage& luminance, const UniformityOpt
   map.polynomial_order = order;
   map.spline_intervals = intervals;
   EYEBOX_ASSIGN_OR_RETURN(const SmoothField polynomial,
-                          FitSmoothField(luminance, FieldModel::kPolynomial, order));
+                          FitSmoothField(luminance, FieldModel::kPolynomial, order, scatter));
   EYEBOX_ASSIGN_OR_RETURN(map.smooth, NormaliseAt(polynomial, reference.x_px, reference.y_px));
   if (map.choice.splines.empty() && !options.spline_intervals) return absl::OkStatus();
   EYEBOX_ASSIGN_OR_RETURN(const SmoothField spline,
-                          FitSmoothField(luminance, FieldModel::kSpline, intervals));
+                          FitSmoothField(luminance, FieldModel::kSpline, intervals, scatter));
   EYEBOX_ASSIGN_OR_RETURN(map.alternative, NormaliseAt(spline, reference.x_px, reference.y_px));
   const bool asked_one =
       options.polynomial_order.has_value() != options.spline_intervals.has_value();
@@ -151,7 +161,8 @@ void CompareRawAndSmooth(UniformityMap& map) {
     extend(map.raw_range, raw);
     extend(map.smooth_range, model);
     squares += (raw - model) * (raw - model);
-    expected += map.raw.variance.pixels()[i];
+    const double shared = map.scatter_sigma.empty() ? 0 : map.scatter_sigma.pixels()[i];
+    expected += map.raw.variance.pixels()[i] - shared * shared;
     ++pixels;
   }
   map.residual_rms = std::sqrt(squares / static_cast<double>(pixels));
@@ -166,7 +177,7 @@ absl::StatusOr<UniformityMap> MeasureUniformity(const LuminanceImage& full_field
   EYEBOX_ASSIGN_OR_RETURN(const Disk disk, ReferenceDisk(luminance.size(), options));
   EYEBOX_ASSIGN_OR_RETURN(
       const PatchMean reference,
-      MeanOverDisk(luminance, disk.centre.x_px, disk.centre.y_px, disk.radius_px));
+      MeanOverDisk(full_field, disk.centre.x_px, disk.centre.y_px, disk.radius_px));
   if (!(reference.value > 5 * reference.sigma)) {
     return Rejected("uniformity",
                     absl::StrCat("luminance ", reference.value, " +- ", reference.sigma,
@@ -177,17 +188,17 @@ absl::StatusOr<UniformityMap> MeasureUniformity(const LuminanceImage& full_field
   map.reference = disk.centre;
   map.reference_luminance = reference.value;
   map.reference_luminance_sigma = reference.sigma;
-  map.raw = RatioToReference(luminance, disk, reference);
-  EYEBOX_RETURN_IF_ERROR(FitSmoothModels(luminance, options, disk.centre, map));
+  RatioToReference(full_field, disk, reference, map);
+  EYEBOX_RETURN_IF_ERROR(FitSmoothModels(full_field, options, disk.centre, map));
   CompareRawAndSmooth(map);
   const double patch_px =
       std::max(options.patch_radius_fraction *
                    std::min(luminance.size().width_px, luminance.size().height_px),
                1.0);
   EYEBOX_ASSIGN_OR_RETURN(map.nine_points,
-                          MeasurePointUniformity(luminance, PointPattern::kNine, patch_px));
+                          MeasurePointUniformity(full_field, PointPattern::kNine, patch_px));
   EYEBOX_ASSIGN_OR_RETURN(map.thirteen_points,
-                          MeasurePointUniformity(luminance, PointPattern::kThirteen, patch_px));
+                          MeasurePointUniformity(full_field, PointPattern::kThirteen, patch_px));
   return map;
 }
 

@@ -43,13 +43,14 @@ struct AreaUniformity {
 
 struct UniformityMap {
   PixelPoint reference;
-  double reference_luminance = 0;          // mean over the reference disk, unit of the input
-  double reference_luminance_sigma = 0;    // of noise; the scale's is common and cancels in g
-  MeasuredImage raw;                       // g = L(x) / L(reference), unit "1"
-  FieldChoice choice;                      // how the smooth models were chosen
-  int polynomial_order = 0;                // of the smooth models that were fitted
-  int spline_intervals = 0;                // 0 where no spline is determined
-  SmoothField smooth;                      // 1 at the reference point: the one that predicts better
+  double reference_luminance = 0;        // mean over the reference disk, unit of the input
+  double reference_luminance_sigma = 0;  // without the scale's, which cancels in g
+  MeasuredImage raw;                     // g = L(x) / L(reference), unit "1"
+  Image<float> scatter_sigma;  // of raw, see LuminanceImage, and part of its variance; may be empty
+  FieldChoice choice;          // how the smooth models were chosen
+  int polynomial_order = 0;    // of the smooth models that were fitted
+  int spline_intervals = 0;    // 0 where no spline is determined
+  SmoothField smooth;          // 1 at the reference point: the one that predicts better
   std::optional<SmoothField> alternative;  // likewise, of the other kind, where it is determined
   AreaUniformity area;
   FieldRange raw_range;              // over valid pixels

@@ -30,23 +30,29 @@ double SigmaOfRoot(double variance, double sigma) {
   return variance > sigma ? sigma / (2 * root) : std::sqrt(variance + sigma) - root;
 }
 
-void AddMean(const optics::MeasuredImage& image, v1::ReduceResult& result) {
+void AddMean(const optics::LuminanceImage& luminance, v1::ReduceResult& result) {
+  const optics::MeasuredImage& image = luminance.image;
   double sum = 0;
+  double scatter_sum = 0;
+  double scatter_squares = 0;
   double variance_sum = 0;
   int valid = 0;
   for (size_t i = 0; i < image.mask.pixels().size(); ++i) {
     if (image.mask.pixels()[i] != 0) continue;
     sum += image.value.pixels()[i];
     variance_sum += image.variance.pixels()[i];
+    const double scatter = luminance.ScatterSigma(i);
+    scatter_sum += scatter;
+    scatter_squares += scatter * scatter;
     ++valid;
   }
   result.set_valid_pixels(valid);
   result.set_invalid_pixels(static_cast<int32_t>(image.mask.pixels().size()) - valid);
   if (valid == 0) return;
-  AddParameter(*result.mutable_parameters(), "mean", sum / valid, std::sqrt(variance_sum) / valid,
-               image.unit);
-  AddParameter(*result.mutable_parameters(), "pixel_sigma_rms", std::sqrt(variance_sum / valid), 0,
-               image.unit);
+  AddParameter(*result.mutable_parameters(), "mean", sum / valid,
+               std::hypot(std::sqrt(variance_sum), scatter_sum) / valid, image.unit);
+  AddParameter(*result.mutable_parameters(), "pixel_sigma_rms",
+               std::sqrt((variance_sum + scatter_squares) / valid), 0, image.unit);
 }
 
 // Mean over the disk at the image centre that levels are read from; one without a value there
@@ -56,16 +62,18 @@ void AddCentre(const optics::LuminanceImage& luminance, const optics::Calibratio
   const DiskReading disk = ReadReferenceDisk(luminance, calibration, 0);
   double sum = 0;
   double variance = 0;
+  double scatter = 0;
   int count = 0;
   for (size_t i = 0; i < disk.luminance.size(); ++i) {
     if (!std::isfinite(disk.luminance[i])) continue;
     sum += disk.luminance[i];
+    scatter += disk.scatter_sigma[i];
     variance += disk.own_variance[i] + disk.flat_variance[i];
     ++count;
   }
   if (count == 0) return;
-  AddParameter(*result.mutable_parameters(), "at_centre", sum / count, std::sqrt(variance) / count,
-               luminance.image.unit);
+  AddParameter(*result.mutable_parameters(), "at_centre", sum / count,
+               std::hypot(std::sqrt(variance), scatter) / count, luminance.image.unit);
 }
 
 void AddExposures(const optics::BracketReport& report, v1::ReduceResult& result) {
@@ -86,18 +94,20 @@ void AddExposures(const optics::BracketReport& report, v1::ReduceResult& result)
   }
 }
 
-// Each term's part of the pixels' variance; that of the scale, which all pixels share, beside it.
+// Each term's part of the pixels' variance; what all pixels share beside it.
 void AddBudget(const optics::ReducedLevel& level, v1::ReduceResult& result) {
   const optics::VarianceBudget budget = optics::WithScale(
       level.report.budget, level.luminance.image, level.luminance.scale_relative_sigma);
-  const std::pair<const char*, double> terms[] = {{"variance_photon", budget.photon},
-                                                  {"variance_read", budget.read},
-                                                  {"variance_quantisation", budget.quantisation},
-                                                  {"variance_dark", budget.dark},
-                                                  {"variance_flat", budget.flat},
-                                                  {"variance_linearity", budget.linearity},
-                                                  {"variance_scatter", budget.scatter},
-                                                  {"variance_scale_common", budget.scale}};
+  const std::pair<const char*, double> terms[] = {
+      {"variance_photon", budget.photon},
+      {"variance_read", budget.read},
+      {"variance_quantisation", budget.quantisation},
+      {"variance_dark", budget.dark},
+      {"variance_flat", budget.flat},
+      {"variance_linearity", budget.linearity},
+      {"variance_scatter", budget.scatter},
+      {"variance_scatter_common", budget.scatter_common},
+      {"variance_scale_common", budget.scale}};
   for (const auto& [name, share] : terms) {
     AddParameter(*result.mutable_parameters(), name, share, 0, "1");
   }
@@ -132,13 +142,19 @@ void AddPairWarnings(const optics::BracketReport& report, v1::ReduceResult& resu
   }
 }
 
-absl::Status AddMaps(const optics::MeasuredImage& image, const std::filesystem::path& folder,
+absl::Status AddMaps(const optics::LuminanceImage& luminance, const std::filesystem::path& folder,
                      v1::ReduceResult& result) {
+  const optics::MeasuredImage& image = luminance.image;
   EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(),
                           WriteMap(folder, "luminance.npy", "luminance", image.unit, image.value));
   EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(),
                           WriteMap(folder, "luminance_sigma.npy", "luminance_sigma", image.unit,
-                                   SigmaMap(image.variance)));
+                                   SigmaMap(VarianceWithScatter(luminance))));
+  if (!luminance.scatter_sigma.empty()) {
+    EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(), WriteMap(folder, "luminance_scatter_sigma.npy",
+                                                         "luminance_scatter_sigma", image.unit,
+                                                         luminance.scatter_sigma));
+  }
   EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(),
                           WriteMap(folder, "mask.npy", "mask", "1", MaskAsFloat(image)));
   return absl::OkStatus();
@@ -157,7 +173,7 @@ absl::StatusOr<v1::ReduceResult> DescribeReduction(const optics::ReducedLevel& l
   result.set_unit(luminance.image.unit);
   result.set_width_px(luminance.image.size().width_px);
   result.set_height_px(luminance.image.size().height_px);
-  AddMean(luminance.image, result);
+  AddMean(luminance, result);
   AddCentre(luminance, calibration, result);
   auto& parameters = *result.mutable_parameters();
   AddParameter(parameters, "system_gain", noise.gain_dn_per_e, noise.gain_sigma_dn_per_e, "DN/e-");
@@ -179,7 +195,7 @@ absl::StatusOr<v1::ReduceResult> DescribeReduction(const optics::ReducedLevel& l
     result.add_warnings("no flat was recorded: vignetting and pixel response are still in");
   }
   AddAll(*result.mutable_history(), luminance.image.history);
-  EYEBOX_RETURN_IF_ERROR(AddMaps(luminance.image, folder, result));
+  EYEBOX_RETURN_IF_ERROR(AddMaps(luminance, folder, result));
   return result;
 }
 

@@ -11,7 +11,9 @@
 
 namespace eyebox::service {
 
-// Writes luminance.npy, luminance_sigma.npy and mask.npy into `folder` unless it is empty.
+// Writes luminance.npy, luminance_sigma.npy and mask.npy into `folder` unless it is empty, and
+// where scattered light was taken out luminance_scatter_sigma.npy, the part of the sigma that all
+// pixels share (see optics::LuminanceImage).
 absl::StatusOr<v1::ReduceResult> DescribeReduction(const optics::ReducedLevel& level,
                                                    const optics::Calibration& calibration,
                                                    const std::string& series,

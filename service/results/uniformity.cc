@@ -88,6 +88,11 @@ absl::Status AddMaps(const optics::UniformityMap& map, const std::filesystem::pa
                           WriteMap(folder, "uniformity_g.npy", "g", "1", map.raw.value));
   EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(), WriteMap(folder, "uniformity_g_sigma.npy", "g_sigma",
                                                        "1", SigmaMap(map.raw.variance)));
+  if (!map.scatter_sigma.empty()) {
+    EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(),
+                            WriteMap(folder, "uniformity_g_scatter_sigma.npy", "g_scatter_sigma",
+                                     "1", map.scatter_sigma));
+  }
   EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(), WriteMap(folder, "uniformity_g_smooth.npy",
                                                        "g_smooth", "1", map.smooth.Values()));
   EYEBOX_ASSIGN_OR_RETURN(*result.add_maps(), WriteMap(folder, "uniformity_g_smooth_sigma.npy",

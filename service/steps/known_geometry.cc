@@ -39,6 +39,27 @@ double StepDeg(const optics::CameraModel& camera) {
   return 10 * decade;
 }
 
+// What pixels share of scattered light is averaged as it is, their noise as noise.
+absl::StatusOr<optics::FieldMap> ResampleG(const optics::UniformityMap& map,
+                                           const optics::ViewGeometry& geometry,
+                                           const optics::FieldGrid& grid) {
+  if (map.scatter_sigma.empty()) return optics::ResampleToField(map.raw, geometry, grid);
+  optics::MeasuredImage noise = map.raw;
+  for (size_t i = 0; i < noise.variance.pixels().size(); ++i) {
+    const float shared = map.scatter_sigma.pixels()[i];
+    noise.variance.pixels()[i] -= shared * shared;
+  }
+  EYEBOX_ASSIGN_OR_RETURN(optics::FieldMap field, optics::ResampleToField(noise, geometry, grid));
+  noise.value = map.scatter_sigma;
+  EYEBOX_ASSIGN_OR_RETURN(const optics::FieldMap shared,
+                          optics::ResampleToField(noise, geometry, grid));
+  for (size_t i = 0; i < field.image.variance.pixels().size(); ++i) {
+    const float sigma = shared.image.value.pixels()[i];
+    field.image.variance.pixels()[i] += sigma * sigma;
+  }
+  return field;
+}
+
 }  // namespace
 
 absl::StatusOr<std::optional<optics::ViewGeometry>> KnownGeometry(
@@ -71,8 +92,7 @@ absl::Status AddFieldMap(const std::optional<optics::ViewGeometry>& geometry,
   if (!geometry) return absl::OkStatus();
   EYEBOX_ASSIGN_OR_RETURN(const optics::FieldGrid grid,
                           optics::GridOver(*geometry, StepDeg(geometry->camera)));
-  EYEBOX_ASSIGN_OR_RETURN(const optics::FieldMap field,
-                          optics::ResampleToField(map.raw, *geometry, grid));
+  EYEBOX_ASSIGN_OR_RETURN(optics::FieldMap field, ResampleG(map, *geometry, grid));
   GiveAngles(*geometry, *result.mutable_points_9());
   GiveAngles(*geometry, *result.mutable_points_13());
   auto& parameters = *result.mutable_parameters();

@@ -29,13 +29,22 @@ double SumOver(const std::vector<size_t>& pixels, const std::vector<double>& val
   return sum;
 }
 
-fit::LevelReading MeanOf(const DiskReading& level, const std::vector<size_t>& pixels) {
+// Signed: an error that all readings share.
+double ScatterRelativeSigma(const DiskReading& level, const std::vector<size_t>& pixels) {
+  const double luminance = SumOver(pixels, level.luminance);
+  return luminance > 0 ? SumOver(pixels, level.scatter_sigma) / luminance : 0;
+}
+
+fit::LevelReading MeanOf(const DiskReading& level, const std::vector<size_t>& pixels,
+                         double shared_relative_sigma) {
   const auto count = static_cast<double>(pixels.size());
   fit::LevelReading reading;
   reading.drive = level.drive;
   reading.luminance = SumOver(pixels, level.luminance) / count;
-  reading.luminance_sigma = std::hypot(std::sqrt(SumOver(pixels, level.own_variance)) / count,
-                                       level.relative_sigma * reading.luminance);
+  const double apart = ScatterRelativeSigma(level, pixels) - shared_relative_sigma;
+  reading.luminance_sigma =
+      std::hypot(std::sqrt(SumOver(pixels, level.own_variance)) / count,
+                 level.relative_sigma * reading.luminance, apart * reading.luminance);
   if (reading.luminance < 0 && reading.luminance > -kBlackSigmas * reading.luminance_sigma) {
     reading.luminance = 0;
   }
@@ -77,6 +86,7 @@ DiskReading ReadReferenceDisk(const optics::LuminanceImage& image,
     // Single precision may lose the difference where the flat is nearly all of the variance.
     level.own_variance.push_back(std::max(variance - flat, 1e-6 * variance));
     level.flat_variance.push_back(flat);
+    level.scatter_sigma.push_back(image.ScatterSigma(i));
   }
   return level;
 }
@@ -92,11 +102,16 @@ absl::StatusOr<fit::LevelSeries> MakeLevelSeries(std::span<const DiskReading> le
                     "record exposures that neither saturate nor vanish there");
   }
   fit::LevelSeries series;
-  for (const DiskReading& level : levels) series.readings.push_back(MeanOf(level, pixels));
   const DiskReading& brightest = levels.back();
+  const double scatter_relative_sigma = ScatterRelativeSigma(brightest, pixels);
+  for (const DiskReading& level : levels) {
+    series.readings.push_back(MeanOf(level, pixels, scatter_relative_sigma));
+  }
   const double flat_relative_sigma =
       std::sqrt(SumOver(pixels, brightest.flat_variance)) / SumOver(pixels, brightest.luminance);
-  series.scale_relative_sigma = std::hypot(scale_relative_sigma, flat_relative_sigma);
+  series.scale_relative_sigma =
+      std::hypot(scale_relative_sigma, flat_relative_sigma, scatter_relative_sigma);
+  series.scatter_relative_sigma = std::abs(scatter_relative_sigma);
   series.flat_relative_sigma = flat_relative_sigma;
   series.luminance_unit = unit;
   series.source = source;

@@ -3,7 +3,9 @@
 // Which errors count where. Light, read-out and quantisation differ from level to level and make
 // up the sigma of a reading. The flat is one and the same for all levels: its error multiplies
 // every reading by one factor, like that of the known luminance, so that it belongs to the scale
-// and leaves gamma alone; counted per reading it would inflate gamma's sigma. The dark of an
+// and leaves gamma alone; counted per reading it would inflate gamma's sigma. So it is with what is
+// not known of the scattered light, of which every full field has the same share; where a level's
+// share differs, the difference stays with its reading. The dark of an
 // exposure is shared too, but as an offset that changes with the exposures a level uses; it stays
 // in the readings' sigma, which is conservative (L0 takes up most of it) and small.
 #ifndef EYEBOX_SERVICE_STEPS_REFERENCE_DISK_H_
@@ -30,6 +32,7 @@ struct DiskReading {
   std::vector<double> luminance;
   std::vector<double> own_variance;   // of this level alone
   std::vector<double> flat_variance;  // of the flat, common to all levels
+  std::vector<double> scatter_sigma;  // of scattered light that was taken out, common to all
   double relative_sigma = 0;          // common to its pixels, not to other levels: of the drift
 };
 

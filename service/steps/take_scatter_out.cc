@@ -31,6 +31,7 @@ absl::StatusOr<std::optional<optics::GlareRemovalFigures>> TakeScatterOut(
     *term *= rest;
   }
   budget.scatter = removal.figures.variance_share;
+  budget.scatter_common = removal.figures.common_share;
   return removal.figures;
 }
 

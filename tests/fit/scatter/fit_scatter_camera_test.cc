@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
+#include "fit/scatter/read_disk.h"
 #include "optics/scatter/contrast.h"
 #include "optics/scatter/correct_scatter.h"
-#include "optics/scatter/radial_profile.h"
 #include "optics/scatter/spread_light.h"
 #include "tests/fit/scatter/simulated_glare.h"
 
@@ -74,15 +74,9 @@ LuminanceImage PhotographDisk(GlarePattern pattern, double diameter, uint64_t se
   return Photograph(scene, seed);
 }
 
-// The pixels' own grid and the finite rings leave errors of this share.
-constexpr double kModelError = 0.003;
-
 GlareSeries MeasureSeries() {
   GlareSeries series{{}, kFieldRadiusDeg, "cd/m2", "camera"};
-  const auto add = [&](GlarePattern pattern, double diameter, const optics::RadialReading& ring) {
-    series.readings.push_back({pattern, diameter, ring.offset_deg, ring.value,
-                               std::hypot(ring.sigma, kModelError * ring.value)});
-  };
+  const DiskAim aim = {{kMiddle, kMiddle}, kPitchDeg};
   uint64_t seed = 1;
   for (const auto& [pattern, diameters] :
        {std::pair{GlarePattern::kBrightDisk,
@@ -90,14 +84,9 @@ GlareSeries MeasureSeries() {
         {GlarePattern::kBlackDisk, {1, 2, 4, 8}}}) {
     for (const double diameter : diameters) {
       const LuminanceImage frame = PhotographDisk(pattern, diameter, seed++);
-      std::vector<double> rings = {0, kPitchDeg / 2};
-      if (pattern == GlarePattern::kBrightDisk && diameter == 0.35) {
-        rings = {0.8, 0.87, 1, 1.1, 1.5, 1.7, 2.5, 2.7, 4, 4.2, 6, 6.2};
-      }
-      const auto profile =
-          optics::MeasureRadialProfile(frame.image, kMiddle, kMiddle, kPitchDeg, rings);
-      EXPECT_TRUE(profile.ok()) << profile.status();
-      for (const auto& ring : *profile) add(pattern, diameter, ring);
+      const auto readings = ReadDisk(frame.image, {}, aim, pattern, diameter);
+      EXPECT_TRUE(readings.ok()) << readings.status();
+      series.readings.insert(series.readings.end(), readings->begin(), readings->end());
     }
   }
   return series;

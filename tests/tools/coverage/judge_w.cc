@@ -104,8 +104,9 @@ absl::Status JudgeCleanLuminance(const fit::FieldFit& w, const capture::SimParam
     std::vector<double> pulls;
     for (const auto& [x, y] : where) {
       if (image.image.mask.at(x, y) != 0) continue;
-      pulls.push_back((image.image.value.at(x, y) - truth->at(x, y) * measurement.scale_error()) /
-                      std::sqrt(image.image.variance.at(x, y)));
+      pulls.push_back(
+          (image.image.value.at(x, y) - truth->at(x, y) * measurement.scale_error()) /
+          std::hypot(std::sqrt(image.image.variance.at(x, y)), image.scatter_sigma.at(x, y)));
     }
     table[name].Add(pulls);
     return absl::OkStatus();

@@ -79,7 +79,7 @@ std::string Describe(const Setting& setting) {
   return absl::StrCat("exposure ", setting.exposure_s, " s, gain ", setting.gain_db, " dB");
 }
 
-absl::Status FrameStacker::Add(const FrameView& frame, std::optional<double> temperature_degC) {
+absl::Status FrameStacker::Add(const FrameView& frame, std::optional<double> temperature_deg_c) {
   EYEBOX_RETURN_IF_ERROR(Validate(range_));
   const size_t count = frame.size.PixelCount();
   const std::string where = absl::StrCat("frame ", frames_ + 1, " of ", Describe(setting_));
@@ -104,9 +104,9 @@ absl::Status FrameStacker::Add(const FrameView& frame, std::optional<double> tem
     return BadInput(where, absl::StrCat("a count is above ", range_.FullScaleDn(), " DN"),
                     absl::StrCat("state more significant bits than ", range_.bits));
   }
-  if (temperature_degC) {
+  if (temperature_deg_c) {
     ++temperatures_;
-    temperature_sum_ += *temperature_degC;
+    temperature_sum_ += *temperature_deg_c;
   }
   ++frames_;
   ++partial_frames_;

@@ -61,7 +61,7 @@ class FrameStacker {
   // The first frame decides the size. Errors: InvalidArgument (another size, an empty frame, a
   // count above 2^bits - 1, more than 65536 frames); the frame is then not added. After a count
   // above 2^bits - 1 the stacker is empty.
-  absl::Status Add(const FrameView& frame, std::optional<double> temperature_degC = {});
+  absl::Status Add(const FrameView& frame, std::optional<double> temperature_deg_c = {});
 
   int frames() const { return frames_; }
 

@@ -45,20 +45,20 @@ std::optional<double> MeanDn(const DarkFrame& dark, const Image<uint8_t>& defect
 // A borrowed dark: the calibration outlives every bracket that is ordered with it.
 Dark Borrowed(const DarkFrame& dark) { return {Dark(), &dark}; }
 
-Dark WithThermalSigma(DarkFrame dark, const std::string& source, double temperature_degC,
+Dark WithThermalSigma(DarkFrame dark, const std::string& source, double temperature_deg_c,
                       double error_dn) {
   const auto variance_dn2 = static_cast<float>(error_dn * error_dn);
   for (float& variance : dark.image_dn.variance.pixels()) variance += variance_dn2;
   dark.image_dn.history.push_back(
       absl::StrFormat("MatchDark(%s for a light of %.4g degC, thermal sigma %.2g DN)", source,
-                      temperature_degC, error_dn));
+                      temperature_deg_c, error_dn));
   return std::make_shared<const DarkFrame>(std::move(dark));
 }
 
 // Linear in temperature between two darks of one setting.
-DarkFrame Between(const DarkFrame& cold, const DarkFrame& hot, double temperature_degC) {
+DarkFrame Between(const DarkFrame& cold, const DarkFrame& hot, double temperature_deg_c) {
   const double span = *hot.temperature_degC - *cold.temperature_degC;
-  const auto of_hot = static_cast<float>((temperature_degC - *cold.temperature_degC) / span);
+  const auto of_hot = static_cast<float>((temperature_deg_c - *cold.temperature_degC) / span);
   const float of_cold = 1 - of_hot;
   DarkFrame mean{cold.setting, UnwrittenMeasuredImage(cold.image_dn.size(), "DN")};
   const MeasuredImage& a = cold.image_dn;
@@ -71,7 +71,7 @@ DarkFrame Between(const DarkFrame& cold, const DarkFrame& hot, double temperatur
   }
   BlankMaskedPixels(mean.image_dn);
   mean.image_dn.history = a.history;
-  mean.temperature_degC = temperature_degC;
+  mean.temperature_degC = temperature_deg_c;
   mean.clipped_share = std::max(cold.clipped_share, hot.clipped_share);
   return mean;
 }
@@ -89,16 +89,17 @@ struct Candidates {
   const DarkFrame* hot = nullptr;
 };
 
-Candidates Choose(const std::vector<const DarkFrame*>& darks, double temperature_degC) {
+Candidates Choose(const std::vector<const DarkFrame*>& darks, double temperature_deg_c) {
   Candidates chosen;
-  const auto distance = [temperature_degC](const DarkFrame* dark) {
-    return std::abs(*dark->temperature_degC - temperature_degC);
+  const auto distance = [temperature_deg_c](const DarkFrame* dark) {
+    return std::abs(*dark->temperature_degC - temperature_deg_c);
   };
   for (const DarkFrame* dark : darks) {
     if (chosen.nearest == nullptr || distance(dark) < distance(chosen.nearest)) {
       chosen.nearest = dark;
     }
-    const DarkFrame*& side = *dark->temperature_degC <= temperature_degC ? chosen.cold : chosen.hot;
+    const DarkFrame*& side =
+        *dark->temperature_degC <= temperature_deg_c ? chosen.cold : chosen.hot;
     if (side == nullptr || distance(dark) < distance(side)) side = dark;
   }
   return chosen;
@@ -152,14 +153,14 @@ void StateDarkCurrents(Calibration& calibration) {
   for (DarkFrame& dark : darks) dark.dark_current_dn = rate_dn_s * dark.setting.exposure_s;
 }
 
-double ThermalErrorDn(const DarkFrame& dark, double temperature_degC, const NoiseModel& noise) {
+double ThermalErrorDn(const DarkFrame& dark, double temperature_deg_c, const NoiseModel& noise) {
   if (!dark.temperature_degC) return 0;
-  const double difference = temperature_degC - *dark.temperature_degC;
+  const double difference = temperature_deg_c - *dark.temperature_degC;
   return DarkCurrentDn(dark, noise) * std::abs(std::exp2(difference / kSteepestDoublingK) - 1);
 }
 
 absl::StatusOr<Dark> DarkFor(const Calibration& calibration, const Setting& setting,
-                             std::optional<double> temperature_degC) {
+                             std::optional<double> temperature_deg_c) {
   EYEBOX_ASSIGN_OR_RETURN(const DarkFrame* const first, FindDark(calibration, setting));
   std::vector<const DarkFrame*> darks;
   for (const DarkFrame& dark : calibration.darks) {
@@ -168,9 +169,9 @@ absl::StatusOr<Dark> DarkFor(const Calibration& calibration, const Setting& sett
     darks.push_back(&dark);
   }
   const NoiseModel& noise = calibration.noise;
-  if (!temperature_degC) return DarkForUnknown(darks, setting, noise);
-  const auto [nearest, cold, hot] = Choose(darks, *temperature_degC);
-  const double error_dn = ThermalErrorDn(*nearest, *temperature_degC, noise);
+  if (!temperature_deg_c) return DarkForUnknown(darks, setting, noise);
+  const auto [nearest, cold, hot] = Choose(darks, *temperature_deg_c);
+  const double error_dn = ThermalErrorDn(*nearest, *temperature_deg_c, noise);
   if (error_dn <= kNegligible * TemporalNoiseDn(noise)) return Borrowed(*nearest);
   const bool enclosed =
       cold != nullptr && hot != nullptr && cold->image_dn.size() == hot->image_dn.size();
@@ -178,18 +179,18 @@ absl::StatusOr<Dark> DarkFor(const Calibration& calibration, const Setting& sett
   if (std::min(chord_error_dn, error_dn) > TemporalNoiseDn(noise)) {
     return TooFar(setting,
                   absl::StrFormat("it was taken at %.4g degC, the nearest dark at %.4g degC",
-                                  *temperature_degC, *nearest->temperature_degC),
+                                  *temperature_deg_c, *nearest->temperature_degC),
                   error_dn, noise);
   }
   if (chord_error_dn < error_dn) {
-    return WithThermalSigma(Between(*cold, *hot, *temperature_degC),
+    return WithThermalSigma(Between(*cold, *hot, *temperature_deg_c),
                             absl::StrFormat("darks of %.4g and %.4g degC", *cold->temperature_degC,
                                             *hot->temperature_degC),
-                            *temperature_degC, chord_error_dn);
+                            *temperature_deg_c, chord_error_dn);
   }
   return WithThermalSigma(*nearest,
                           absl::StrFormat("dark of %.4g degC", *nearest->temperature_degC),
-                          *temperature_degC, error_dn);
+                          *temperature_deg_c, error_dn);
 }
 
 }  // namespace eyebox::optics

@@ -21,10 +21,10 @@ namespace eyebox::optics {
 // counts clipped at 0 DN) it stays unknown.
 void StateDarkCurrents(Calibration& calibration);
 
-// DN by which the mean of a dark may differ from that of a light at `temperature_degC`; 0 where one
-// of the two tells no temperature. An unknown dark current is bounded by the noise in the dark,
+// DN by which the mean of a dark may differ from that of a light at `temperature_deg_c`; 0 where
+// one of the two tells no temperature. An unknown dark current is bounded by the noise in the dark,
 // whose variance is at least K times it.
-double ThermalErrorDn(const DarkFrame& dark, double temperature_degC, const NoiseModel& noise);
+double ThermalErrorDn(const DarkFrame& dark, double temperature_deg_c, const NoiseModel& noise);
 
 // Where darks of several temperatures were recorded: the nearest, or the weighted mean of two that
 // enclose the light's, whichever may be off by less. The variance of the dark counts that error
@@ -33,7 +33,7 @@ double ThermalErrorDn(const DarkFrame& dark, double temperature_degC, const Nois
 // names both temperatures. Or the light tells none, and the darks differ by that much).
 absl::StatusOr<std::shared_ptr<const DarkFrame>> DarkFor(const Calibration& calibration,
                                                          const Setting& setting,
-                                                         std::optional<double> temperature_degC);
+                                                         std::optional<double> temperature_deg_c);
 
 }  // namespace eyebox::optics
 

@@ -127,8 +127,8 @@ std::optional<double> SensorTemperatureDegC(const SimFaults& faults, uint64_t pr
   return kColdDegC + faults.warming_kelvin * warmed;
 }
 
-double DarkCurrentGrowth(std::optional<double> temperature_degC) {
-  return temperature_degC ? std::exp2((*temperature_degC - kColdDegC) / kDoublingKelvin) : 1;
+double DarkCurrentGrowth(std::optional<double> temperature_deg_c) {
+  return temperature_deg_c ? std::exp2((*temperature_deg_c - kColdDegC) / kDoublingKelvin) : 1;
 }
 
 Image<double> DisplayGrid(const SimFaults& faults, ImageSize size) {

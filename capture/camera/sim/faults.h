@@ -50,7 +50,7 @@ Image<double> Flashed(const SimFaults& faults, const Image<double>& rate, double
 std::optional<double> SensorTemperatureDegC(const SimFaults& faults, uint64_t presentation);
 
 // Dark current at this temperature over that of a sensor just switched on.
-double DarkCurrentGrowth(std::optional<double> temperature_degC);
+double DarkCurrentGrowth(std::optional<double> temperature_deg_c);
 
 // The pixel grid of the display as the pixels of the camera integrate it, mean 1.
 Image<double> DisplayGrid(const SimFaults& faults, ImageSize size);

@@ -61,7 +61,7 @@ absl::Status CheckDiameters(std::string_view field, const std::vector<double>& d
   for (const double diameter : diameters_deg) {
     if (diameter > 0 && diameter < 180) continue;
     return BadInput("PlanOptions." + std::string(field), "holds " + std::to_string(diameter),
-                    "give diameters above 0 and below 180 deg");
+                    "give angles above 0 and below 180 deg");
   }
   return absl::OkStatus();
 }
@@ -70,6 +70,8 @@ absl::Status CheckDisks(const PlanOptions& options) {
   EYEBOX_RETURN_IF_ERROR(CheckDiameters("disk_diameters_deg", options.disk_diameters_deg));
   EYEBOX_RETURN_IF_ERROR(
       CheckDiameters("black_disk_diameters_deg", options.black_disk_diameters_deg));
+  EYEBOX_RETURN_IF_ERROR(
+      CheckDiameters("checkerboard_squares_deg", options.checkerboard_squares_deg));
   EYEBOX_RETURN_IF_ERROR(CheckCount("disk_repeats", options.disk_repeats, 1, 65536));
   if (options.disk_drive > 0 && options.disk_drive <= 1) return absl::OkStatus();
   return BadInput("PlanOptions.disk_drive", "is " + std::to_string(options.disk_drive),
@@ -127,7 +129,10 @@ class PlanBuilder {
   }
 
   void AddDisks() {
-    if (options_.disk_diameters_deg.empty() && options_.black_disk_diameters_deg.empty()) return;
+    if (options_.disk_diameters_deg.empty() && options_.black_disk_diameters_deg.empty() &&
+        options_.checkerboard_squares_deg.empty()) {
+      return;
+    }
     AddGlareStimulus(StimulusPattern::kFullField, 0, 0);
     AddGlareStimulus(StimulusPattern::kFullField, 0, options_.disk_drive);
     for (const double diameter : options_.disk_diameters_deg) {
@@ -135,6 +140,9 @@ class PlanBuilder {
     }
     for (const double diameter : options_.black_disk_diameters_deg) {
       AddGlareStimulus(StimulusPattern::kBlackDisk, diameter, options_.disk_drive);
+    }
+    for (const double side : options_.checkerboard_squares_deg) {
+      AddGlareStimulus(StimulusPattern::kCheckerboard, side, options_.disk_drive);
     }
   }
 

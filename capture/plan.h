@@ -38,11 +38,14 @@ struct PlanOptions {
   int reference_every = 0;  // levels; 0: no reference
   double reference_drive = 0.5;
   int reference_repeats = 4;
-  // Disks that show how light scatters: bright on drive 0, black on bright. Any of them brings the
-  // black and the bright full field too, after the levels, as the series kGlareSeries.
+  // Disks that show how light scatters: bright on drive 0, black on bright. Any of them, and any
+  // checkerboard, brings the black and the bright full field too, after the levels, as the series
+  // kGlareSeries.
   std::vector<double> disk_diameters_deg = {};
   std::vector<double> black_disk_diameters_deg = {};
-  double disk_drive = 1;
+  // Sides of the squares of checkerboards, in the same series.
+  std::vector<double> checkerboard_squares_deg = {};
+  double disk_drive = 1;  // of whatever is bright in that series
   int disk_repeats = 4;
 
   // Errors: InvalidArgument (names the field and what it may be).

@@ -1,9 +1,11 @@
 #include "service/scatter.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "capture/base/file.h"
 #include "capture/base/status.h"
 #include "capture/recording/reader.h"
@@ -21,6 +23,7 @@ namespace {
 
 constexpr int kPredictedPatches = 40;
 constexpr double kSmallestPatch = 0.5;  // of the core's radius
+constexpr double kNotedMisfit = 3;      // reduced chi-square
 
 bool IsRecording(const std::filesystem::path& source) {
   return std::filesystem::is_directory(source);
@@ -39,7 +42,7 @@ absl::StatusOr<MeasuredGlare> ReadTable(const std::filesystem::path& file,
 absl::StatusOr<MeasuredGlare> ReadRecording(const std::filesystem::path& folder,
                                             const std::optional<std::string>& series,
                                             const GlareOptions& options,
-                                            const std::optional<optics::ScatterKernel>& instrument,
+                                            const std::optional<optics::KnownGlare>& instrument,
                                             const Watcher& watcher) {
   EYEBOX_ASSIGN_OR_RETURN(const auto recording, capture::RecordingReader::Open(folder));
   const auto measure = [&]() -> absl::StatusOr<MeasuredGlare> {
@@ -55,7 +58,7 @@ absl::StatusOr<MeasuredGlare> ReadRecording(const std::filesystem::path& folder,
 absl::StatusOr<MeasuredGlare> Read(const std::filesystem::path& source,
                                    const std::optional<std::string>& series,
                                    const GlareOptions& options,
-                                   const std::optional<optics::ScatterKernel>& instrument,
+                                   const std::optional<optics::KnownGlare>& instrument,
                                    const Watcher& watcher) {
   if (!IsRecording(source)) return ReadTable(source, options);
   return ReadRecording(source, series, options, instrument, watcher);
@@ -103,6 +106,18 @@ report::GlareFigureInput FigureOf(const v1::ScatterResult& result) {
   return figure;
 }
 
+// The covariance was widened by the misfit, but what lies beyond the readings can be off by more.
+void WarnOfMisfit(const fit::ScatterFit& fit, v1::ScatterResult& result) {
+  const double reduced = fit.chi_square / std::max(fit.degrees_of_freedom, 1);
+  if (reduced <= kNotedMisfit) return;
+  result.add_warnings(absl::StrFormat(
+      "w does not follow the readings (reduced chi-square %.3g): its sigmas were widened, yet what "
+      "is taken out of other scenes may be off by more; try another --tail, --pedestal or a "
+      "smaller "
+      "--reach-deg",
+      reduced));
+}
+
 absl::Status Write(const std::filesystem::path& out, v1::ScatterResult& result) {
   if (out.empty()) return absl::OkStatus();
   result.set_figure_file("scatter.svg");
@@ -127,8 +142,8 @@ absl::StatusOr<v1::ScatterResult> MeasureScatter(const ScatterRequest& request,
     asked.fit.instrument = instrument->AsInstrument();
     warnings.insert(warnings.end(), flat.warnings.begin(), flat.warnings.end());
   }
-  const std::optional<optics::ScatterKernel> known =
-      instrument ? std::optional(instrument->kernel) : std::nullopt;
+  std::optional<optics::KnownGlare> known;
+  if (instrument) known = {instrument->kernel, instrument->glare_relative_sigma};
   EYEBOX_ASSIGN_OR_RETURN(const MeasuredGlare glare,
                           Read(request.source, request.series, request.glare, known,
                                watcher.Part(instrument ? 0.4 : 0, 0.8)));
@@ -141,7 +156,7 @@ absl::StatusOr<v1::ScatterResult> MeasureScatter(const ScatterRequest& request,
           fit, asked.fit, field_radius_deg,
           request.predict_deg.empty() ? PatchesOver(fit, field_radius_deg) : request.predict_deg));
   v1::ScatterResult result = DescribeScatter({fit, glare.series, instrument, predicted});
-  AddGlareFigures(glare, result);
+  AddGlareFigures(glare, *result.mutable_figures());
   warnings.insert(warnings.end(), glare.warnings.begin(), glare.warnings.end());
   if (!instrument) {
     warnings.emplace_back(
@@ -149,6 +164,7 @@ absl::StatusOr<v1::ScatterResult> MeasureScatter(const ScatterRequest& request,
         "it as --reference to tell them apart");
   }
   result.mutable_warnings()->Add(warnings.begin(), warnings.end());
+  WarnOfMisfit(fit, result);
   EYEBOX_RETURN_IF_ERROR(Write(request.out, result));
   if (watcher.progress) watcher.progress({1, "done"});
   return result;

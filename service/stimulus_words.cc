@@ -31,6 +31,11 @@ std::string WhatToShow(const CaptureSpec& spec) {
     case StimulusPattern::kBlackDisk:
       return absl::StrFormat("show a disk of %g deg and drive 0 on drive %s",
                              spec.stimulus.diameter_deg, drive);
+    case StimulusPattern::kCheckerboard:
+      return absl::StrFormat(
+          "show a checkerboard of drive %s and 0, squares of %g deg, four of them meeting in the "
+          "middle, the one above it to the left bright",
+          drive, spec.stimulus.diameter_deg);
   }
   return "show the next stimulus";
 }

@@ -25,6 +25,9 @@ enum class StimulusPattern {
   kFullField,
   kDisk,       // bright disk on drive 0, centred on the optical axis
   kBlackDisk,  // disk of drive 0 on a bright field
+  // Squares, bright and of drive 0 by turns, over the whole field; four meet on the optical axis,
+  // and the one above it to the left is bright.
+  kCheckerboard,
 };
 
 // Drive values in [0, 1] of the red, green and blue channel, as written to the framebuffer.
@@ -32,7 +35,7 @@ using DriveRgb = std::array<double, 3>;
 
 struct Stimulus {
   StimulusPattern pattern = StimulusPattern::kFullField;
-  double diameter_deg = 0;        // of the disk; 0 for a full field
+  double diameter_deg = 0;        // of the disk, or side of a square; 0 for a full field
   std::optional<DriveRgb> drive;  // empty where unknown (frames measured elsewhere)
   friend bool operator==(const Stimulus&, const Stimulus&) = default;
 };

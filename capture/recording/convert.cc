@@ -51,7 +51,8 @@ constexpr Pairs<FrameKind, v1::FrameKind> kKinds = {{FrameKind::kLight, v1::FRAM
 constexpr Pairs<StimulusPattern, v1::StimulusPattern> kPatterns = {
     {StimulusPattern::kFullField, v1::STIMULUS_PATTERN_FULL_FIELD},
     {StimulusPattern::kDisk, v1::STIMULUS_PATTERN_DISK},
-    {StimulusPattern::kBlackDisk, v1::STIMULUS_PATTERN_BLACK_DISK}};
+    {StimulusPattern::kBlackDisk, v1::STIMULUS_PATTERN_BLACK_DISK},
+    {StimulusPattern::kCheckerboard, v1::STIMULUS_PATTERN_CHECKERBOARD}};
 constexpr Pairs<TriggerSource, v1::TriggerSource> kTriggers = {
     {TriggerSource::kSoftware, v1::TRIGGER_SOURCE_SOFTWARE},
     {TriggerSource::kLine, v1::TRIGGER_SOURCE_LINE},

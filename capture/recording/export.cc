@@ -41,6 +41,8 @@ std::string PatternName(StimulusPattern pattern) {
       return "disk";
     case StimulusPattern::kBlackDisk:
       return "black_disk";
+    case StimulusPattern::kCheckerboard:
+      return "checkerboard";
   }
   return "";
 }

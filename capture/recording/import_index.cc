@@ -97,15 +97,18 @@ absl::StatusOr<Stimulus> ReadStimulus(const Row& row) {
         stimulus.pattern,
         row.OneOf<StimulusPattern>("pattern", {{"full_field", StimulusPattern::kFullField},
                                                {"disk", StimulusPattern::kDisk},
-                                               {"black_disk", StimulusPattern::kBlackDisk}}));
+                                               {"black_disk", StimulusPattern::kBlackDisk},
+                                               {"checkerboard", StimulusPattern::kCheckerboard}}));
   }
   EYEBOX_ASSIGN_OR_RETURN(const auto diameter_deg, row.Known("diameter_deg", 0, 180));
   stimulus.diameter_deg = diameter_deg.value_or(0);
   const bool full_field = stimulus.pattern == StimulusPattern::kFullField;
   if (full_field != (stimulus.diameter_deg == 0)) {
-    return BadInput(row.Where(full_field ? "diameter_deg" : "pattern"),
-                    full_field ? "belongs to a disk" : "has no diameter_deg above 0",
-                    "give a diameter to every disk and to nothing else");
+    return BadInput(
+        row.Where(full_field ? "diameter_deg" : "pattern"),
+        full_field ? "belongs to a disk or a checkerboard" : "has no diameter_deg above 0",
+        "give every disk its diameter, every checkerboard the side of a square, and "
+        "nothing to full fields");
   }
   constexpr std::array<std::string_view, 3> kDrives = {"drive_r", "drive_g", "drive_b"};
   const auto known =

@@ -111,14 +111,38 @@ absl::StatusOr<BoardMeans> MeasureSquares(const LuminanceImage& image, const Che
   return BoardMeans{bright.Get(), dark.Get()};
 }
 
+// A larger scene that holds the board in its middle.
+struct Scene {
+  ImageSize size;
+  Checkerboard drawn;     // all squares
+  Checkerboard measured;  // those of the board
+};
+
+Scene SceneOf(ImageSize size, const Checkerboard& board, const InstrumentGlare& instrument) {
+  if (!board.continued) return {size, board, board};
+  const double reach_px = std::min<double>(instrument.kernel.reach_deg / instrument.pitch_deg,
+                                           std::max(size.width_px, size.height_px));
+  // An even number of squares more on each side leaves the first one as it is.
+  const int more = 2 * static_cast<int>(std::ceil(reach_px / board.square_px / 2));
+  const int margin = static_cast<int>(std::ceil(more * board.square_px));
+  Scene scene{{size.width_px + 2 * margin, size.height_px + 2 * margin}, board, board};
+  scene.measured.corner = {board.corner.x_px + margin, board.corner.y_px + margin};
+  scene.drawn.corner = {scene.measured.corner.x_px - more * board.square_px,
+                        scene.measured.corner.y_px - more * board.square_px};
+  scene.drawn.columns += 2 * more;
+  scene.drawn.rows += 2 * more;
+  return scene;
+}
+
 // Dark over bright, of a board without any light in its dark squares.
 absl::StatusOr<double> GlareShare(ImageSize size, const Checkerboard& board,
                                   const InstrumentGlare& instrument) {
+  const Scene scene = SceneOf(size, board, instrument);
   LuminanceImage seen;
-  seen.image = MakeMeasuredImage(size, "relative");
-  EYEBOX_ASSIGN_OR_RETURN(seen.image.value, SpreadLight(DrawCheckerboard(size, board),
+  seen.image = MakeMeasuredImage(scene.size, "relative");
+  EYEBOX_ASSIGN_OR_RETURN(seen.image.value, SpreadLight(DrawCheckerboard(scene.size, scene.drawn),
                                                         instrument.pitch_deg, instrument.kernel));
-  EYEBOX_ASSIGN_OR_RETURN(const BoardMeans means, MeasureSquares(seen, board));
+  EYEBOX_ASSIGN_OR_RETURN(const BoardMeans means, MeasureSquares(seen, scene.measured));
   return std::max(means.dark.value, 0.0) / means.bright.value;
 }
 
@@ -159,6 +183,34 @@ absl::StatusOr<ContrastFigure> CheckerboardContrast(
     EYEBOX_ASSIGN_OR_RETURN(glare_share, GlareShare(image.image.size(), board, *instrument));
   }
   return MakeContrast(means.bright, means.dark, glare_share);
+}
+
+absl::StatusOr<Checkerboard> CheckerboardAround(ImageSize size, const PixelPoint& axis,
+                                                double square_px) {
+  if (!(square_px > 0 && std::isfinite(square_px))) {
+    return BadInput("checkerboard", absl::StrCat("squares of ", square_px, " px"),
+                    "give a side above 0");
+  }
+  const auto whole = [square_px](double before, double after) {
+    return static_cast<int>(std::floor(std::min(before, after) / square_px));
+  };
+  const int across = whole(axis.x_px + 0.5, size.width_px - 0.5 - axis.x_px);
+  const int down = whole(axis.y_px + 0.5, size.height_px - 0.5 - axis.y_px);
+  if (across < 1 || down < 1) {
+    return Rejected(
+        "checkerboard",
+        absl::StrCat("squares of ", square_px, " px do not fit around (", axis.x_px, ", ",
+                     axis.y_px, ") in ", size.width_px, " x ", size.height_px, " pixels"),
+        "show smaller squares");
+  }
+  Checkerboard board;
+  board.corner = {axis.x_px - across * square_px, axis.y_px - down * square_px};
+  board.square_px = square_px;
+  board.columns = 2 * across;
+  board.rows = 2 * down;
+  board.first_is_bright = (across + down) % 2 == 0;
+  board.continued = true;
+  return board;
 }
 
 Image<float> DrawCheckerboard(ImageSize size, const Checkerboard& board) {

@@ -56,7 +56,15 @@ struct Checkerboard {
   int rows = 0;
   bool first_is_bright = true;
   double measured_fraction = 0.5;  // diameter of the disk in each square, of its side
+  // The display goes on with squares beyond these, as far as its light scatters.
+  bool continued = false;
 };
+
+// As many whole squares as the image shows on each side of the axis, on which four of them meet;
+// the one above it to the left is bright. Continued. Errors: InvalidArgument (side not above 0),
+// FailedPrecondition (a square does not fit on each side of the axis).
+absl::StatusOr<Checkerboard> CheckerboardAround(ImageSize size, const PixelPoint& axis,
+                                                double square_px);
 
 // Mean of the bright squares over mean of the dark ones. `instrument`: unless corrected.
 // Errors: InvalidArgument (fewer than 2 squares, a board that does not lie in the image, kernel),

@@ -45,6 +45,7 @@ inline constexpr char kSensorHelp[] =
     "else estimated from the frames)";
 
 void AddCapture(CLI::App& app, Work& work);
+void AddContrast(CLI::App& app, Work& work);
 void AddDevices(CLI::App& app, Work& work);
 void AddImport(CLI::App& app, Work& work);
 void AddScatter(CLI::App& app, Work& work);

@@ -26,6 +26,7 @@ void AddAllCommands(CLI::App& app, Work& work) {
   AddUniformity(app, work);
   AddCharacterize(app, work);
   AddScatter(app, work);
+  AddContrast(app, work);
   AddGeometry(app, work);
   AddPhotometry(app, work);
   AddFit(app, work);

@@ -28,7 +28,12 @@ std::vector<CLI::Option*> BindPlan(CLI::App& command, capture::PlanOptions& plan
           .add_option("--black-disks", plan.black_disk_diameters_deg,
                       "Likewise of black disks on the bright field")
           ->delimiter(','),
-      command.add_option("--disk-repeats", plan.disk_repeats, "Frames per disk and exposure")};
+      command
+          .add_option("--checkerboards", plan.checkerboard_squares_deg,
+                      "Sides in deg, by comma, of the squares of checkerboards, for contrast")
+          ->delimiter(','),
+      command.add_option("--disk-repeats", plan.disk_repeats,
+                         "Frames per disk or board and exposure")};
   for (CLI::Option* option : options) option->capture_default_str();
   return options;
 }

@@ -5,6 +5,7 @@
 
 #include "capture/base/status.h"
 #include "service/cli/command.h"
+#include "service/cli/glare_output.h"
 #include "service/cli/scatter_options.h"
 #include "service/cli/terminal.h"
 #include "service/scatter.h"
@@ -25,24 +26,11 @@ const std::map<std::string, optics::CoreShape> kCores = {{"gaussian", optics::Co
 const std::map<std::string, optics::TailShape> kTails = {
     {"moffat", optics::TailShape::kMoffat}, {"power_law", optics::TailShape::kPowerLaw}};
 
-void PrintFigures(const v1::ScatterResult& result) {
-  const char* unit = result.luminance_unit().c_str();
-  for (const v1::GlareFigure& figure : result.figures()) {
-    if (figure.name() == "full_field_contrast") {
-      std::printf("  full-field contrast %s%.4g +- %.2g : 1; noise allows up to %.3g : 1\n",
-                  figure.only_lower_bound() ? "at least " : "", figure.value(), figure.sigma(),
-                  figure.floor());
-      continue;
-    }
-    std::printf("  black spot of %.3g deg: glare %.3f +- %.2g %% of the field",
-                figure.diameter_deg(), 100 * figure.value(), 100 * figure.sigma());
-    std::printf("; the instrument's floor is %.3f %%%s\n", 100 * figure.floor(),
-                figure.instrument_share() > 0 ? "" : " (of noise; its own glare is not known)");
-  }
+void PrintPredicted(const v1::ScatterResult& result) {
   for (const v1::PredictedPatch& patch : result.predicted()) {
     std::printf("  patch of %8.3g deg: p = (%.4f +- %.4f) p* + (%.4g +- %.2g) %s\n",
                 patch.diameter_deg(), patch.slope(), patch.slope_sigma(), patch.offset(),
-                patch.offset_sigma(), unit);
+                patch.offset_sigma(), result.luminance_unit().c_str());
   }
 }
 
@@ -58,7 +46,8 @@ absl::Status Run(const Options& options) {
               result.kernel_of() == "headset" ? "headset alone" : "headset and instrument together",
               result.chi_square(), result.degrees_of_freedom(), result.identifiability().c_str());
   PrintParameters(result.parameters());
-  PrintFigures(result);
+  PrintGlareFigures(result.figures());
+  PrintPredicted(result);
   return absl::OkStatus();
 }
 

@@ -62,6 +62,17 @@ void AddReading(const fit::FittedGlareReading& fitted, v1::ScatterResult& result
   reading.set_residual_sigmas(fitted.residual_sigmas);
 }
 
+void AddContrast(const char* name, double square_deg, const optics::ContrastFigure& contrast,
+                 google::protobuf::RepeatedPtrField<v1::GlareFigure>& figures) {
+  v1::GlareFigure& figure = *figures.Add();
+  figure.set_name(name);
+  figure.set_diameter_deg(square_deg);
+  figure.set_value(contrast.contrast);
+  figure.set_sigma(contrast.sigma);
+  figure.set_floor(contrast.limit);
+  figure.set_only_lower_bound(contrast.only_lower_bound);
+}
+
 }  // namespace
 
 v1::ScatterKernel ToProto(const fit::KnownScatter& scatter, double glare_relative_sigma) {
@@ -105,17 +116,18 @@ v1::ScatterResult DescribeScatter(const ScatterFindings& findings) {
   return result;
 }
 
-void AddGlareFigures(const MeasuredGlare& glare, v1::ScatterResult& result) {
+void AddGlareFigures(const MeasuredGlare& glare,
+                     google::protobuf::RepeatedPtrField<v1::GlareFigure>& figures) {
   if (glare.full_field_contrast) {
-    v1::GlareFigure& figure = *result.add_figures();
-    figure.set_name("full_field_contrast");
-    figure.set_value(glare.full_field_contrast->contrast);
-    figure.set_sigma(glare.full_field_contrast->sigma);
-    figure.set_floor(glare.full_field_contrast->limit);
-    figure.set_only_lower_bound(glare.full_field_contrast->only_lower_bound);
+    AddContrast("full_field_contrast", 0, *glare.full_field_contrast, figures);
+  }
+  for (const CheckerboardFigure& board : glare.checkerboards) {
+    AddContrast("checkerboard_contrast", board.square_deg, board.seen, figures);
+    if (!board.corrected) continue;
+    AddContrast("checkerboard_contrast_of_display", board.square_deg, *board.corrected, figures);
   }
   for (const BlackSpotFigure& spot : glare.black_spots) {
-    v1::GlareFigure& figure = *result.add_figures();
+    v1::GlareFigure& figure = *figures.Add();
     figure.set_name("black_spot_glare");
     figure.set_diameter_deg(spot.diameter_deg);
     figure.set_value(spot.glare.share);

@@ -26,7 +26,8 @@ struct ScatterFindings {
 v1::ScatterResult DescribeScatter(const ScatterFindings& findings);
 
 // Those that the recording held the stimuli for.
-void AddGlareFigures(const MeasuredGlare& glare, v1::ScatterResult& result);
+void AddGlareFigures(const MeasuredGlare& glare,
+                     google::protobuf::RepeatedPtrField<v1::GlareFigure>& figures);
 
 // scatter_removed_share, scatter_floor_median, scatter_below_floor_share among the parameters.
 void AddScatterRemoval(const optics::GlareRemovalFigures& figures, v1::ReduceResult& result);

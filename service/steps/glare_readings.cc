@@ -11,6 +11,7 @@
 #include "absl/strings/str_join.h"
 #include "capture/base/status.h"
 #include "capture/plan.h"
+#include "optics/scatter/remove_glare.h"
 #include "service/steps/captures.h"
 #include "service/steps/levels.h"
 
@@ -23,6 +24,11 @@ constexpr double kSameDrive = 1e-6;
 double OnPlane(double diameter_deg) {
   const double half = diameter_deg / 2 * std::numbers::pi / 180;
   return 2 * std::tan(half) * 180 / std::numbers::pi;
+}
+
+// Side on the image plane of a square that touches the axis and is seen at `side_deg`.
+double SideOnPlane(double side_deg) {
+  return std::tan(side_deg * std::numbers::pi / 180) * 180 / std::numbers::pi;
 }
 
 double DriveOf(const Stimulus& stimulus) {
@@ -41,11 +47,11 @@ absl::StatusOr<std::string> GlareSeriesOf(const capture::RecordingReader& record
   if (names.contains(capture::kGlareSeries)) return capture::kGlareSeries;
   if (names.size() == 1) return *names.begin();
   if (names.empty()) {
-    return Rejected("glare series", "the recording shows no disk",
+    return Rejected("glare series", "the recording shows no disk and no checkerboard",
                     "record bright disks of several diameters, black disks and full fields "
-                    "(eyebox capture or simulate with --disks and --black-disks)");
+                    "(eyebox capture or simulate with --disks, --black-disks, --checkerboards)");
   }
-  return Missing("glare series", "several series show disks",
+  return Missing("glare series", "several series show disks or checkerboards",
                  "choose one with --series: " + absl::StrJoin(names, ", "));
 }
 
@@ -82,21 +88,43 @@ void KeepBrightest(std::vector<StimulusCaptures>& groups, MeasuredGlare& glare) 
       absl::StrFormat("%d stimuli of another drive than %.4g were left out", left_out, brightest));
 }
 
-absl::Status AddFigures(const std::optional<optics::LuminanceImage>& black,
-                        const std::vector<std::pair<double, optics::LuminanceImage>>& spots,
-                        const GlareOptions& options,
-                        const std::optional<optics::ScatterKernel>& instrument,
-                        MeasuredGlare& glare) {
+absl::StatusOr<CheckerboardFigure> MeasureBoard(
+    const optics::LuminanceImage& image, double square_deg, const MeasuredGlare& glare,
+    const std::optional<optics::KnownGlare>& instrument) {
+  CheckerboardFigure figure{square_deg, {}, {}};
+  EYEBOX_ASSIGN_OR_RETURN(
+      const optics::Checkerboard board,
+      optics::CheckerboardAround(image.image.size(), glare.aim.axis,
+                                 SideOnPlane(square_deg) / glare.aim.pitch_deg));
+  std::optional<optics::InstrumentGlare> seen_through;
+  if (instrument) seen_through = {instrument->kernel, glare.aim.pitch_deg};
+  EYEBOX_ASSIGN_OR_RETURN(figure.seen, optics::CheckerboardContrast(image, board, seen_through));
+  if (!instrument) return figure;
+  EYEBOX_ASSIGN_OR_RETURN(const optics::GlareRemoval removal,
+                          optics::RemoveGlare(image, *instrument));
+  EYEBOX_ASSIGN_OR_RETURN(figure.corrected,
+                          optics::CheckerboardContrast(removal.luminance, board, std::nullopt));
+  return figure;
+}
+
+struct SeenStimuli {
+  std::optional<optics::LuminanceImage> black;
+  std::vector<std::pair<double, optics::LuminanceImage>> spots;  // by diameter on the plane
+};
+
+absl::Status AddFigures(const SeenStimuli& seen, const GlareOptions& options,
+                        const std::optional<optics::KnownGlare>& instrument, MeasuredGlare& glare) {
   if (!glare.bright_field) return absl::OkStatus();
   const optics::MeasuringDisk disk{glare.aim.axis, options.reading.spot_radius_px};
-  if (black) {
+  if (seen.black) {
     EYEBOX_ASSIGN_OR_RETURN(glare.full_field_contrast,
-                            optics::FullFieldContrast(*glare.bright_field, *black, disk));
+                            optics::FullFieldContrast(*glare.bright_field, *seen.black, disk));
   }
-  for (const auto& [diameter_deg, image] : spots) {
+  const auto kernel = instrument ? std::optional(instrument->kernel) : std::nullopt;
+  for (const auto& [diameter_deg, image] : seen.spots) {
     const optics::BlackSpot spot{disk, diameter_deg, options.field_radius_deg};
     EYEBOX_ASSIGN_OR_RETURN(const optics::GlareFigure figure,
-                            optics::BlackSpotGlare(image, *glare.bright_field, spot, instrument));
+                            optics::BlackSpotGlare(image, *glare.bright_field, spot, kernel));
     glare.black_spots.push_back({diameter_deg, figure});
   }
   return absl::OkStatus();
@@ -129,7 +157,7 @@ absl::StatusOr<MeasuredGlare> MeasureGlare(capture::RecordingReader& recording,
                                            const std::optional<std::string>& series,
                                            const optics::Calibration& calibration,
                                            const GlareOptions& options,
-                                           const std::optional<optics::ScatterKernel>& instrument,
+                                           const std::optional<optics::KnownGlare>& instrument,
                                            const Watcher& watcher) {
   EYEBOX_RETURN_IF_ERROR(options.Validate());
   EYEBOX_ASSIGN_OR_RETURN(const std::string name, GlareSeriesOf(recording, series));
@@ -139,8 +167,12 @@ absl::StatusOr<MeasuredGlare> MeasureGlare(capture::RecordingReader& recording,
   glare.series.field_radius_deg = options.field_radius_deg;
   glare.series.source = absl::StrCat("series \"", name, "\"");
   KeepBrightest(groups, glare);
-  std::optional<optics::LuminanceImage> black;
-  std::vector<std::pair<double, optics::LuminanceImage>> spots;
+  std::optional<optics::KnownGlare> camera = instrument;
+  if (camera) {
+    camera->pitch_deg = glare.aim.pitch_deg;
+    camera->surround = options.surround;
+  }
+  SeenStimuli seen;
   for (size_t i = 0; i < groups.size(); ++i) {
     EYEBOX_RETURN_IF_ERROR(
         watcher.Reach(static_cast<double>(i) / static_cast<double>(groups.size()),
@@ -149,15 +181,21 @@ absl::StatusOr<MeasuredGlare> MeasureGlare(capture::RecordingReader& recording,
     EYEBOX_ASSIGN_OR_RETURN(optics::ReducedLevel level,
                             ReduceCaptures(recording, groups[i], calibration));
     glare.series.luminance_unit = level.luminance.image.unit;
+    if (stimulus.pattern == StimulusPattern::kCheckerboard) {
+      EYEBOX_ASSIGN_OR_RETURN(glare.checkerboards.emplace_back(),
+                              MeasureBoard(level.luminance, stimulus.diameter_deg, glare, camera));
+      continue;
+    }
     EYEBOX_RETURN_IF_ERROR(
         AddReadings(stimulus, level.luminance.image, calibration, options, glare));
     if (stimulus.pattern == StimulusPattern::kBlackDisk) {
-      spots.emplace_back(OnPlane(stimulus.diameter_deg), std::move(level.luminance));
+      seen.spots.emplace_back(OnPlane(stimulus.diameter_deg), std::move(level.luminance));
     } else if (stimulus.pattern == StimulusPattern::kFullField) {
-      (DriveOf(stimulus) > kSameDrive ? glare.bright_field : black) = std::move(level.luminance);
+      (DriveOf(stimulus) > kSameDrive ? glare.bright_field : seen.black) =
+          std::move(level.luminance);
     }
   }
-  EYEBOX_RETURN_IF_ERROR(AddFigures(black, spots, options, instrument, glare));
+  EYEBOX_RETURN_IF_ERROR(AddFigures(seen, options, camera, glare));
   return glare;
 }
 

@@ -33,12 +33,20 @@ struct BlackSpotFigure {
   optics::GlareFigure glare;
 };
 
+struct CheckerboardFigure {
+  double square_deg = 0;
+  optics::ContrastFigure seen;
+  // Where the instrument's scatter is known: without it, so that it is the display's own.
+  std::optional<optics::ContrastFigure> corrected;
+};
+
 struct MeasuredGlare {
   fit::GlareSeries series;
   fit::DiskAim aim;
   std::optional<optics::LuminanceImage> bright_field;
   std::optional<optics::ContrastFigure> full_field_contrast;
   std::vector<BlackSpotFigure> black_spots;
+  std::vector<CheckerboardFigure> checkerboards;
   std::vector<std::string> warnings;
 };
 
@@ -47,14 +55,15 @@ absl::StatusOr<double> PitchDeg(const capture::RecordingHeader& header);
 
 // The series, kGlareSeries unless given, or the only one there is. Brightest drive alone: disks of
 // another are left out with a warning.
-// `instrument`: scatter of the camera alone where known, for the floors of the figures.
+// `instrument`: scatter of the camera alone where known, for the floors of the figures and to take
+// it out of checkerboards; its pitch is that of the recording.
 // Errors: those of reading and ReduceLevel; NotFound (no such series); FailedPrecondition (no
 // disk, no geometry, no valid pixel in the middle: says what to record).
 absl::StatusOr<MeasuredGlare> MeasureGlare(capture::RecordingReader& recording,
                                            const std::optional<std::string>& series,
                                            const optics::Calibration& calibration,
                                            const GlareOptions& options,
-                                           const std::optional<optics::ScatterKernel>& instrument,
+                                           const std::optional<optics::KnownGlare>& instrument,
                                            const Watcher& watcher);
 
 }  // namespace eyebox::service

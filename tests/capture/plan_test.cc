@@ -162,6 +162,7 @@ TEST(GreyPlan, DisksFollowTheLevelsWithTheFieldsThatTheyNeed) {
                                   .exposures_s = {0.1},
                                   .disk_diameters_deg = {1, 5},
                                   .black_disk_diameters_deg = {2},
+                                  .checkerboard_squares_deg = {4},
                                   .disk_drive = 0.8});
   ASSERT_TRUE(plan.ok()) << plan.status();
   std::vector<Stimulus> glare;
@@ -173,7 +174,8 @@ TEST(GreyPlan, DisksFollowTheLevelsWithTheFieldsThatTheyNeed) {
                                           {StimulusPattern::kFullField, 0, bright},
                                           {StimulusPattern::kDisk, 1, bright},
                                           {StimulusPattern::kDisk, 5, bright},
-                                          {StimulusPattern::kBlackDisk, 2, bright}};
+                                          {StimulusPattern::kBlackDisk, 2, bright},
+                                          {StimulusPattern::kCheckerboard, 4, bright}};
   EXPECT_EQ(glare, expected);
   EXPECT_EQ(plan->captures.back().series, kGlareSeries);
   EXPECT_THAT(std::string(MakeGreyPlan({.disk_diameters_deg = {0}}).status().message()),

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "capture/base/status.h"
+#include "capture/photodiode/sim/strobe_light.h"
 
 namespace eyebox::capture {
 namespace {
@@ -29,6 +30,10 @@ absl::Status CheckStimulus(const Stimulus& stimulus) {
       !(stimulus.diameter_deg > 0 && stimulus.diameter_deg < 180)) {
     return BadInput("stimulus.diameter_deg", "is " + std::to_string(stimulus.diameter_deg),
                     "give the diameter of the disk, above 0 and below 180 deg");
+  }
+  if (stimulus.pattern == StimulusPattern::kCheckerboard && stimulus.diameter_deg >= 90) {
+    return BadInput("stimulus.diameter_deg", "is " + std::to_string(stimulus.diameter_deg),
+                    "give the side of a square, below 90 deg");
   }
   return absl::OkStatus();
 }
@@ -58,6 +63,29 @@ void PaintDisk(const PinholeGeometry& geometry, double diameter_deg, double lumi
     for (int x = 0; x < scene.size().width_px; ++x) {
       const double covered =
           Covered(x - geometry.principal_x_px, y - geometry.principal_y_px, radius_px);
+      scene.at(x, y) += covered * (luminance_cd_m2 - scene.at(x, y));
+    }
+  }
+}
+
+// Length of [from, to] in even squares: those from 0 to `side`, from 2 `side` to 3, and so on.
+double EvenLength(double from, double to, double side) {
+  const StrobeLight even = {.period_s = 2 * side, .duty = 0.5};
+  return even.IntegralS(from, to);
+}
+
+// Squares of the even kind by turns along x and y; pixels across an edge take their share.
+void PaintCheckerboard(const PinholeGeometry& geometry, double side_deg, double luminance_cd_m2,
+                       Image<double>& scene) {
+  const double side_px = geometry.focal_length_px * std::tan(side_deg * std::numbers::pi / 180);
+  const auto share = [side_px](double centre_px) {
+    return EvenLength(centre_px - 0.5, centre_px + 0.5, side_px);
+  };
+  for (int y = 0; y < scene.size().height_px; ++y) {
+    const double down = share(y - geometry.principal_y_px);
+    for (int x = 0; x < scene.size().width_px; ++x) {
+      const double across = share(x - geometry.principal_x_px);
+      const double covered = across * down + (1 - across) * (1 - down);
       scene.at(x, y) += covered * (luminance_cd_m2 - scene.at(x, y));
     }
   }
@@ -113,9 +141,14 @@ absl::StatusOr<Image<double>> DrawStimulus(const DisplayParameters& display,
       PaintDisk(geometry, stimulus.diameter_deg, unlit, scene);
       return scene;
     }
+    case StimulusPattern::kCheckerboard: {
+      Image<double> scene(size, unlit);
+      PaintCheckerboard(geometry, stimulus.diameter_deg, lit, scene);
+      return scene;
+    }
   }
   return BadInput("stimulus.pattern", "is not one that the simulator draws",
-                  "use a full field, a disk or a black disk");
+                  "use a full field, a disk, a black disk or a checkerboard");
 }
 
 }  // namespace eyebox::capture

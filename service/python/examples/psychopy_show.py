@@ -9,15 +9,17 @@ colour profile.
 
 import argparse
 
+import numpy
 from psychopy import core, event, visual
 
 import eyebox
 
+BOARD_SQUARES = 64  # on each side of the middle: more than any field holds
 SETTLE_S = 0.2  # from the flip to a steady panel, beside what the rig measures itself
 
 
 class Patches:
-    """A full field or a disk of any grey or colour."""
+    """A full field, a disk or a checkerboard of any grey or colour."""
 
     def __init__(self, degrees_per_height: float) -> None:
         self._window = visual.Window(fullscr=True, color=(-1, -1, -1), units="height",
@@ -32,8 +34,11 @@ class Patches:
             return
         drawn = tuple(2 * drive - 1 for drive in stimulus.drive)  # PsychoPy counts from -1 to 1
         black = (-1, -1, -1)
+        patch = self._disk
         if stimulus.pattern == "full_field":
             self._window.color = drawn
+        elif stimulus.pattern == "checkerboard":
+            patch = self._board(drawn, stimulus.diameter_deg)
         else:
             on_black = stimulus.pattern == "disk"
             self._window.color = black if on_black else drawn
@@ -41,9 +46,18 @@ class Patches:
             self._disk.size = stimulus.diameter_deg / self._degrees_per_height
         for _ in range(2):  # a new background colour is cleared to with the next flip
             if stimulus.pattern != "full_field":
-                self._disk.draw()
+                patch.draw()
             self._window.flip()
         core.wait(SETTLE_S)
+
+    def _board(self, drawn, side_deg: float) -> visual.ImageStim:
+        """Four squares meet in the middle, the one above it to the left is bright."""
+        row, column = numpy.indices((2 * BOARD_SQUARES, 2 * BOARD_SQUARES))
+        bright = (row + column) % 2 == 0  # BOARD_SQUARES is even
+        image = numpy.where(bright[..., None], drawn, (-1.0, -1.0, -1.0))
+        size = 2 * BOARD_SQUARES * side_deg / self._degrees_per_height
+        return visual.ImageStim(self._window, image=image[::-1], size=(size, size),
+                                interpolate=False)
 
     def _ask(self, instruction: str) -> None:
         self._window.color = (-1, -1, -1)

@@ -27,9 +27,9 @@ class Stimulus:
     """What to put before the camera."""
 
     kind: str  # "light": on the headset; "dark": cover the lens; "flat": a uniform reference
-    pattern: str  # "full_field", "disk" or "black_disk"
+    pattern: str  # "full_field", "disk", "black_disk" or "checkerboard"
     drive: Optional[Tuple[float, float, float]]  # red, green, blue, each 0 to 1
-    diameter_deg: float  # of a disk
+    diameter_deg: float  # of a disk; side of a checkerboard's square
     instruction: str  # in words, for an experimenter
 
     @classmethod

@@ -29,15 +29,19 @@ capture::PlanOptions OptionsOf(const v1::MakePlanRequest& request) {
                                 request.disk_diameters_deg().end()};
   options.black_disk_diameters_deg = {request.black_disk_diameters_deg().begin(),
                                       request.black_disk_diameters_deg().end()};
+  options.checkerboard_squares_deg = {request.checkerboard_squares_deg().begin(),
+                                      request.checkerboard_squares_deg().end()};
   if (request.has_seed()) options.seed = request.seed();
   return options;
 }
 
 absl::StatusOr<v1::CapturePlan> Plan(const v1::MakePlanRequest& request) {
   if (request.levels() > kMostLevels || request.exposures_s_size() > kMostExposures ||
-      request.disk_diameters_deg_size() + request.black_disk_diameters_deg_size() > kMostDisks) {
+      request.disk_diameters_deg_size() + request.black_disk_diameters_deg_size() +
+              request.checkerboard_squares_deg_size() >
+          kMostDisks) {
     return BadField("levels", "with exposures and disks, are more than a plan may hold",
-                    "ask for at most 4096 levels, 64 exposures and 256 disks");
+                    "ask for at most 4096 levels, 64 exposures, 256 disks and boards");
   }
   EYEBOX_ASSIGN_OR_RETURN(const CapturePlan plan, capture::MakeGreyPlan(OptionsOf(request)));
   return capture::ToProto(plan);

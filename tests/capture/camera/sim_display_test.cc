@@ -82,6 +82,30 @@ TEST(DrawStimulus, BlackDiskIsTheNegative) {
   EXPECT_NEAR(scene->at(0, 0), 59, 1e-12);
 }
 
+TEST(DrawStimulus, SquaresMeetOnTheAxisAndTheUpperLeftOneIsBright) {
+  const DisplayParameters display;
+  const PinholeGeometry geometry{
+      .focal_length_px = 100, .principal_x_px = 49.5, .principal_y_px = 39.5};
+  const double side_deg = std::atan(0.105) * 180 / std::numbers::pi;  // 10.5 px
+  const auto scene = DrawStimulus(display, geometry, {100, 80},
+                                  {.pattern = StimulusPattern::kCheckerboard,
+                                   .diameter_deg = side_deg,
+                                   .drive = DriveRgb{1, 1, 1}});
+  ASSERT_TRUE(scene.ok()) << scene.status();
+  const double white = DisplayLuminance(display, {1, 1, 1});
+  const double black = DisplayLuminance(display, {0, 0, 0});
+  EXPECT_DOUBLE_EQ(scene->at(49, 39), white);
+  EXPECT_DOUBLE_EQ(scene->at(50, 39), black);
+  EXPECT_DOUBLE_EQ(scene->at(49, 40), black);
+  EXPECT_DOUBLE_EQ(scene->at(50, 40), white);
+  EXPECT_DOUBLE_EQ(scene->at(45, 35), white);
+  EXPECT_NEAR(scene->at(60, 40), (white + black) / 2, 1e-9) << "half of the pixel";
+  EXPECT_DOUBLE_EQ(scene->at(65, 40), black);
+  double sum = 0;
+  for (const double value : scene->pixels()) sum += value;
+  EXPECT_NEAR(sum / 8000, (white + black) / 2, 0.02 * white);
+}
+
 TEST(DrawStimulus, RefusesWhatItCannotShow) {
   const SimParameters parameters;
   const auto draw = [&](const Stimulus& stimulus) {

@@ -73,6 +73,48 @@ TEST(ContrastTest, CorrectedCheckerboardShowsTheDisplay) {
   EXPECT_NEAR(figure->contrast, 200, 2);
 }
 
+TEST(ContrastTest, ABoardAroundTheAxisHoldsWholeSquaresOnBothSides) {
+  const auto board = CheckerboardAround({160, 120}, {79.5, 55.5}, 25);
+  ASSERT_TRUE(board.ok()) << board.status();
+  EXPECT_EQ(board->columns, 6);
+  EXPECT_EQ(board->rows, 4);
+  EXPECT_EQ(board->corner.x_px, 4.5);
+  EXPECT_EQ(board->corner.y_px, 5.5);
+  const Image<float> drawn = DrawCheckerboard({160, 120}, *board);
+  EXPECT_EQ(drawn.at(79, 55), 1) << "above the axis to the left";
+  EXPECT_EQ(drawn.at(80, 55), 0);
+  EXPECT_EQ(drawn.at(80, 56), 1);
+  EXPECT_TRUE(
+      absl::IsFailedPrecondition(CheckerboardAround({160, 120}, {79.5, 55.5}, 60).status()));
+  EXPECT_TRUE(absl::IsInvalidArgument(CheckerboardAround({160, 120}, {79.5, 55.5}, 0).status()));
+}
+
+// What lies beside the image scatters into it: the board of a display that goes on is darker in no
+// square, and the limit that the instrument sets is that of the squares which were measured.
+TEST(ContrastTest, SquaresBesideTheImageLowerTheLimit) {
+  Checkerboard board = *CheckerboardAround(kSize, {119.5, 119.5}, 40);
+  const InstrumentGlare instrument{kLens, kPitchDeg};
+  const LuminanceImage seen = WithNoise(Board(100, 0.1), 0.01, 0, 7);
+  const auto goes_on = CheckerboardContrast(seen, board, instrument);
+  board.continued = false;
+  const auto ends = CheckerboardContrast(seen, board, instrument);
+  ASSERT_TRUE(goes_on.ok() && ends.ok());
+  EXPECT_LT(goes_on->limit, ends->limit);
+  Image<float> wide({480, 480});
+  for (int y = 0; y < 480; ++y) {
+    for (int x = 0; x < 480; ++x) wide.at(x, y) = ((x / 40 + y / 40) % 2 == 0) ? 1.0F : 0.0F;
+  }
+  const auto spread = SpreadLight(wide, kPitchDeg, kLens);
+  ASSERT_TRUE(spread.ok());
+  LuminanceImage middle = WithNoise(Image<float>(kSize), 0, 0, 8);
+  for (int y = 0; y < 240; ++y) {
+    for (int x = 0; x < 240; ++x) middle.image.value.at(x, y) = spread->at(x + 120, y + 120);
+  }
+  const auto truth = CheckerboardContrast(middle, board, std::nullopt);
+  ASSERT_TRUE(truth.ok());
+  EXPECT_NEAR(goes_on->limit / truth->contrast, 1, 0.05);
+}
+
 TEST(ContrastTest, BoardMustLieInTheImage) {
   const LuminanceImage image = Even(1, 0.1, 1);
   EXPECT_FALSE(CheckerboardContrast(image, kBoard, std::nullopt).ok());

@@ -15,7 +15,7 @@ enum class FieldModel {
   kSpline,      // bicubic B-splines over equal intervals, `size` of them along the longer side
 };
 
-inline constexpr int kLargestOrder = 8;                    // of polynomials
+inline constexpr int kLargestOrder = 12;                   // of polynomials
 inline constexpr int kMostIntervals = 16;                  // of splines, along the longer side
 inline constexpr int kMostFunctions = kMostIntervals + 3;  // along one side
 

@@ -30,7 +30,8 @@ struct SmoothField {
 
 // Least squares weighted with 1/variance over the valid pixels. `shared_sigma`, unless empty, is an
 // error that all pixels share, as LuminanceImage::scatter_sigma: it passes through the same fit.
-// Errors: InvalidArgument (order outside 0 to 8, intervals outside 1 to 16), FailedPrecondition
+// Errors: InvalidArgument (order outside 0 to kLargestOrder, intervals outside 1 to
+// kMostIntervals), FailedPrecondition
 // (fewer valid pixels than coefficients, or a singular system: a function without a valid pixel).
 absl::StatusOr<SmoothField> FitSmoothField(const MeasuredImage& image, FieldModel model, int order,
                                            const Image<float>& shared_sigma = {});

@@ -73,7 +73,7 @@ void RatioToReference(const LuminanceImage& luminance, const Disk& disk, const P
 // the noise alone. So a model a little larger is taken, whose bias is small beside them: with these
 // steps the stated intervals hold (tests/tools/coverage).
 constexpr size_t kOrdersAboveBest = 2;
-constexpr size_t kIntervalStepsAboveBest = 1;
+constexpr size_t kIntervalStepsAboveBest = 2;
 
 int SizeAbove(const std::vector<CrossValidated>& tried, const CrossValidated& best, size_t steps) {
   for (size_t i = 0; i < tried.size(); ++i) {

@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "capture/base/status.h"
+#include "service/server/handlers/guarded_stream.h"
 #include "service/server/handlers/handlers.h"
 #include "service/server/handlers/reply.h"
-#include "service/server/handlers/stall_guard.h"
 #include "service/server/handlers/validate_preview.h"
 #include "service/server/store/rigs.h"
 
@@ -28,95 +28,55 @@ absl::StatusOr<PreviewView> ViewOf(const RootFolder& data, const v1::PreviewRequ
   return view;
 }
 
-// As WatchCall: one picture is written at a time, and the next one is the newest there is then.
-class PreviewCall final : public grpc::ServerWriteReactor<v1::PreviewFrame>,
-                          public std::enable_shared_from_this<PreviewCall> {
+// The next picture is the newest there is once the one before it is written.
+class PreviewCall final : public GuardedStream<v1::PreviewFrame> {
  public:
   PreviewCall(const HandlerContext& context, grpc::CallbackServerContext* call,
               const v1::PreviewRequest& request)
-      : context_(context), request_(request) {
-    guard_.emplace(call, context.stalled_after);
-  }
+      : GuardedStream(call, context.stalled_after), context_(context), request_(request) {}
 
   void Start() {
-    self_ = shared_from_this();
-    context_.disk.Post([self = self_] { self->Begin(); });
-  }
-
-  void OnWriteDone(bool ok) override {
-    guard_->WriteEnds();
-    {
-      const std::lock_guard lock(mutex_);
-      writing_ = false;
-      gone_ = gone_ || !ok;
-    }
-    Advance();
-  }
-
-  void OnCancel() override {
-    {
-      const std::lock_guard lock(mutex_);
-      gone_ = true;
-    }
-    Advance();
-  }
-
-  void OnDone() override {
-    guard_.reset();  // a listener may keep this a moment longer than the call lives
-    if (viewer_.look) viewer_.look->Leave(viewer_.listener);
-    self_.reset();
+    context_.disk.Post([this, self = Hold()] { Begin(self); });
   }
 
  private:
-  void Begin() {
+  void Begin(const std::shared_ptr<GuardedStream>& self) {
     auto view = ViewOf(context_.recordings, request_);
-    auto viewer = view.ok() ? context_.previews.Look(*view, [self = self_] { self->Advance(); })
+    auto viewer = view.ok() ? context_.previews.Look(*view, [this, self] { Advance(); })
                             : absl::StatusOr<PreviewViewer>(view.status());
     if (!viewer.ok()) return Finish(ToRpcStatus(viewer.status()));
     {
-      const std::lock_guard lock(mutex_);
+      const std::lock_guard lock(mutex());
       viewer_ = *std::move(viewer);
     }
     Advance();
   }
 
-  // Does the one thing that is due, if any: write the newest picture or finish.
-  void Advance() {
-    std::optional<grpc::Status> end;
-    {
-      const std::lock_guard lock(mutex_);
-      if (!viewer_.look || writing_ || finished_) return;
-      const absl::StatusOr<PreviewPicture> newest = viewer_.look->Newest();
-      if (gone_) {
-        end = grpc::Status(grpc::StatusCode::CANCELLED, "the client went away");
-      } else if (!newest.ok()) {
-        end = ToRpcStatus(newest.status());
-      } else if (*newest == nullptr || (*newest)->frame() == sent_) {
-        return;
-      } else {
-        picture_ = **newest;
-        picture_.set_dropped(sent_ == 0 ? 0 : picture_.frame() - sent_ - 1);
-        sent_ = picture_.frame();
-      }
-      (end ? finished_ : writing_) = true;
-    }
-    if (end) return Finish(*end);
-    guard_->WriteBegins();
-    StartWrite(&picture_);
+  bool IsReady() const override { return viewer_.look != nullptr; }
+
+  std::optional<grpc::Status> EndIfDue() override {
+    newest_ = viewer_.look->Newest();
+    if (newest_.ok()) return std::nullopt;
+    return ToRpcStatus(newest_.status());
+  }
+
+  bool TakeNext(v1::PreviewFrame& picture) override {
+    if (*newest_ == nullptr || (*newest_)->frame() == sent_) return false;
+    picture = **newest_;
+    picture.set_dropped(sent_ == 0 ? 0 : picture.frame() - sent_ - 1);
+    sent_ = picture.frame();
+    return true;
+  }
+
+  void Leave() override {
+    if (viewer_.look) viewer_.look->Leave(viewer_.listener);
   }
 
   const HandlerContext& context_;
   const v1::PreviewRequest request_;
-  std::optional<StallGuard> guard_;
-  std::shared_ptr<PreviewCall> self_;  // until gRPC is done with the call
-
-  std::mutex mutex_;
   PreviewViewer viewer_;
-  v1::PreviewFrame picture_;  // being written, or written last
+  absl::StatusOr<PreviewPicture> newest_ = nullptr;
   uint64_t sent_ = 0;
-  bool writing_ = false;
-  bool gone_ = false;
-  bool finished_ = false;
 };
 
 // Waits for one picture.

@@ -1,33 +1,32 @@
 #include <memory>
-#include <mutex>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "capture/base/status.h"
 #include "service/server/handlers/failed_stream.h"
+#include "service/server/handlers/guarded_stream.h"
 #include "service/server/handlers/handlers.h"
-#include "service/server/handlers/stall_guard.h"
 #include "service/server/rpc_status.h"
 #include "service/server/store/names.h"
 
 namespace eyebox::service {
 namespace {
 
-// Writes one event at a time, so that a slow client holds back nobody and costs one event of
-// memory. Events come from the table; a listener says when to look again.
-class WatchCall final : public grpc::ServerWriteReactor<v1::JobEvent>,
-                        public std::enable_shared_from_this<WatchCall> {
+// Events come from the table; a listener says when to look again.
+class WatchCall final : public GuardedStream<v1::JobEvent> {
  public:
   WatchCall(const HandlerContext& context, grpc::CallbackServerContext* call, int64_t number,
             uint32_t from)
-      : jobs_(context.jobs), number_(number), next_(from) {
-    guard_.emplace(call, context.stalled_after);
-  }
+      : GuardedStream(call, context.stalled_after),
+        jobs_(context.jobs),
+        number_(number),
+        next_(from) {}
 
   absl::Status Start() {
-    self_ = shared_from_this();
-    const auto listener = jobs_.table().AddListener(number_, [self = self_] { self->Advance(); });
+    const auto listener = jobs_.table().AddListener(number_, [this, self = Hold()] { Advance(); });
     if (!listener.ok()) {
-      self_.reset();
+      Release();
       return listener.status();
     }
     listener_ = *listener;
@@ -35,79 +34,29 @@ class WatchCall final : public grpc::ServerWriteReactor<v1::JobEvent>,
     return absl::OkStatus();
   }
 
-  void OnWriteDone(bool ok) override {
-    guard_->WriteEnds();
-    {
-      const std::lock_guard lock(mutex_);
-      writing_ = false;
-      gone_ = gone_ || !ok;
-    }
-    Advance();
-  }
-
-  void OnCancel() override {
-    {
-      const std::lock_guard lock(mutex_);
-      gone_ = true;
-    }
-    Advance();
-  }
-
-  void OnDone() override {
-    guard_.reset();  // a listener may keep this a moment longer than the call lives
-    jobs_.table().RemoveListener(number_, listener_);
-    self_.reset();
-  }
-
  private:
-  // Does the one thing that is due, if any: write the next event or finish.
-  void Advance() {
-    std::optional<grpc::Status> end;
-    {
-      const std::lock_guard lock(mutex_);
-      if (writing_ || finished_) return;
-      end = EndIfDue();
-      finished_ = end.has_value();
-      writing_ = !finished_ && TakeNext();
-      if (!finished_ && !writing_) return;
-    }
-    if (end) {
-      Finish(*end);
-    } else {
-      guard_->WriteBegins();
-      StartWrite(&event_);
-    }
-  }
-
-  std::optional<grpc::Status> EndIfDue() const {
-    if (gone_) return grpc::Status(grpc::StatusCode::CANCELLED, "the client went away");
-    if (HasEnded(event_.job())) return grpc::Status::OK;
+  std::optional<grpc::Status> EndIfDue() override {
+    if (HasEnded(message().job())) return grpc::Status::OK;
     if (!jobs_.stopping()) return std::nullopt;
     return ToRpcStatus(absl::UnavailableError(
         Complaint("server", "is stopping",
                   "watch again from sequence " + std::to_string(next_) + " once it is up")));
   }
 
-  bool TakeNext() {
-    auto event = jobs_.table().Event(number_, next_);
-    if (!event.ok() || !*event) return false;
-    event_ = **std::move(event);
+  bool TakeNext(v1::JobEvent& event) override {
+    auto next = jobs_.table().Event(number_, next_);
+    if (!next.ok() || !*next) return false;
+    event = **std::move(next);
     ++next_;
     return true;
   }
 
+  void Leave() override { jobs_.table().RemoveListener(number_, listener_); }
+
   Jobs& jobs_;
   const int64_t number_;
-  std::optional<StallGuard> guard_;
   uint64_t listener_ = 0;
-  std::shared_ptr<WatchCall> self_;  // until gRPC is done with the call
-
-  std::mutex mutex_;
   uint32_t next_;
-  v1::JobEvent event_;  // being written, or written last
-  bool writing_ = false;
-  bool gone_ = false;
-  bool finished_ = false;
 };
 
 absl::Status CheckFrom(JobTable& table, int64_t number, uint32_t from) {

@@ -32,7 +32,7 @@ class TemporaryFolder {
 };
 
 // Each run goes step by step, one for each Allow(); it is asked to stop between steps as real work
-// is. A run takes kSteps steps and then writes its files.
+// is. A run takes kSteps steps and then writes its files; after SayMuch() more, and wordier ones.
 class ManualWork {
  public:
   static constexpr int kSteps = 4;
@@ -65,6 +65,11 @@ class ManualWork {
     file_ = std::move(name);
     bytes_ = std::move(bytes);
   }
+  void SayMuch(int steps, size_t letters_each) {
+    const std::lock_guard lock(mutex_);
+    steps_ = steps;
+    words_ = std::string(letters_each, 'x');
+  }
   int begun() const {
     const std::lock_guard lock(mutex_);
     return begun_;
@@ -77,10 +82,10 @@ class ManualWork {
       ++begun_;
       changed_.notify_all();
     }
-    for (int step = 1; step <= kSteps; ++step) {
+    for (int step = 1; step <= steps_; ++step) {
       AwaitAllowed();
-      EYEBOX_RETURN_IF_ERROR(
-          watcher.Reach(static_cast<double>(step) / kSteps, "step " + std::to_string(step)));
+      EYEBOX_RETURN_IF_ERROR(watcher.Reach(static_cast<double>(step) / steps_,
+                                           "step " + std::to_string(step) + words_));
     }
     const std::lock_guard lock(mutex_);
     EYEBOX_RETURN_IF_ERROR(failure_);
@@ -96,6 +101,8 @@ class ManualWork {
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
+  int steps_ = kSteps;
+  std::string words_;
   int allowed_ = 0;
   int begun_ = 0;
   absl::Status failure_;

@@ -84,6 +84,34 @@ TEST_F(PreviewCallsTest, PicturesAscendAndSayHowManyWereLeftOut) {
   EXPECT_EQ(stream->Finish().error_code(), StatusCode::CANCELLED);
 }
 
+// What gRPC has taken in already still comes, little through this channel; the picture after it is
+// the newest there is.
+TEST_F(PreviewCallsTest, WhoReadsLateGetsTheNewestAndNotABacklog) {
+  constexpr int kMostTakenIn = 25;  // of 19 kB
+  grpc::ChannelArguments narrow;
+  narrow.SetInt(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES, 16384);
+  narrow.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
+  const auto stub = v1::CaptureService::NewStub(
+      grpc::CreateCustomChannel(Address(), grpc::InsecureChannelCredentials(), narrow));
+  CallContext context;
+  const auto stream = stub->Preview(&context, Grey(0.5));
+  v1::PreviewFrame picture;
+  ASSERT_TRUE(stream->Read(&picture));
+  uint64_t last = picture.frame();
+  uint64_t dropped = 0;
+  int read = 0;
+  for (; dropped == 0 && read < kMostTakenIn; ++read) {
+    if (read == 0) std::this_thread::sleep_for(std::chrono::seconds(3));  // thirty pictures
+    ASSERT_TRUE(stream->Read(&picture));
+    EXPECT_EQ(picture.frame(), last + 1 + picture.dropped());
+    last = picture.frame();
+    dropped = picture.dropped();
+  }
+  EXPECT_GT(dropped, 0u) << "after " << read << " pictures";
+  context.TryCancel();
+  EXPECT_EQ(stream->Finish().error_code(), StatusCode::CANCELLED);
+}
+
 TEST_F(PreviewCallsTest, OneSlotHoldsTheNewestPicture) {
   PreviewLook look;
   int told = 0;

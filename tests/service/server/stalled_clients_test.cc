@@ -52,6 +52,25 @@ TEST_F(StalledClientsTest, ADownloadThatNobodyReadsEnds) {
   EXPECT_LT(received, chunk.total_bytes());
 }
 
+TEST_F(StalledClientsTest, AWatcherThatReadsNothingLosesItsStreamAndHoldsBackNobody) {
+  constexpr int kEvents = 64;
+  work_.SayMuch(kEvents, 100'000);
+  const v1::Job job = CreateOk("a");
+  v1::WatchJobRequest request;
+  request.set_name(job.name());
+  CallContext context;
+  const auto reader = stub_->WatchJob(&context, request);
+  v1::JobEvent event;
+  ASSERT_TRUE(reader->Read(&event));
+  work_.AllowAll();
+  EXPECT_EQ(WaitOk(job.name()).state(), v1::JOB_STATE_SUCCEEDED);
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  uint32_t last = event.sequence();
+  while (reader->Read(&event)) last = event.sequence();
+  EXPECT_EQ(reader->Finish().error_code(), StatusCode::CANCELLED);
+  EXPECT_LT(last, uint32_t{kEvents});
+}
+
 TEST_F(StalledClientsTest, PlacesOfStalledArrayStreamsAreFreeAgain) {
   const auto request = MapOf(JobWithMap());
   const auto arrays = v1::RecordingService::NewStub(channel_);

@@ -9,13 +9,12 @@
 #include "capture/base/clock.h"
 #include "capture/base/random.h"
 #include "capture/base/status.h"
+#include "fit/activation/activation_problem.h"
 #include "optics/reduce/reduce_level.h"
 #include "service/planner/measure_setting.h"
 
 namespace eyebox::service {
 namespace {
-
-constexpr size_t kFewestForSpline = 9;  // levels
 
 const optics::ReduceOptions kGrey{.colour_period_px = 1};
 
@@ -49,8 +48,10 @@ Setting Thorough(const Stock& stock, size_t exposures, double disk_deg) {
   for (const double drive : stock.drives) {
     setting.levels.push_back({drive, std::vector<int>(exposures, stock.frames)});
   }
-  setting.model = stock.drives.size() >= kFewestForSpline ? fit::ActivationModel::kMonotoneSpline
-                                                          : fit::ActivationModel::kGammaWithCutoff;
+  const size_t for_spline =
+      fit::ActivationProblem{fit::ActivationModel::kMonotoneSpline, {}}.FewestDrives();
+  setting.model = stock.drives.size() >= for_spline ? fit::ActivationModel::kMonotoneSpline
+                                                    : fit::ActivationModel::kGammaWithCutoff;
   setting.tier = FieldTier::kBlocks;
   setting.tier_size = 1;
   setting.calibration_frames = stock.calibration_frames;

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "capture/camera/sim/sim_rig.h"
@@ -140,6 +141,18 @@ TEST_F(Recorded, ATradeoffMeasuresWhatTheRecordingCanGive) {
   for (const v1::TradeoffLine& line : result->lines()) {
     if (line.lever() == "designed levels") EXPECT_GT(line.measured_rms().value(), 0);
   }
+}
+
+TEST_F(Recorded, ACancelledTradeoffStopsAfterTheTrialsUnderWay) {
+  TradeoffRequest request;
+  request.recording = *recording_;
+  request.options.trials = 8;
+  std::atomic<int> asked = 0;
+  Watcher watcher;
+  watcher.cancelled = [&asked] { return ++asked > 10; };
+  const auto result = RunTradeoff(request, watcher);
+  EXPECT_TRUE(absl::IsCancelled(result.status())) << result.status();
+  EXPECT_LE(asked, 10 + request.options.trials) << "of hundreds";
 }
 
 TEST_F(Recorded, APlanTakesItsPricesFromIt) {

@@ -10,6 +10,7 @@
 #include "absl/strings/str_replace.h"
 #include "capture/base/file.h"
 #include "capture/base/status.h"
+#include "service/contrast.h"
 #include "service/planner/plan_measurement.h"
 #include "service/planner/tradeoff_result.h"
 #include "service/predict_rows.h"
@@ -66,6 +67,8 @@ class Verb {
         return Cube(request.cube());
       case v1::CreateJobRequest::kScatter:
         return Scatter(request.scatter());
+      case v1::CreateJobRequest::kContrast:
+        return Contrast(request.contrast());
       case v1::CreateJobRequest::kVerify:
         return Judge(request.verify());
       case v1::CreateJobRequest::kPredict:
@@ -136,6 +139,16 @@ class Verb {
     return Write(MeasureScatter(request, watcher_));
   }
 
+  absl::Status Contrast(const v1::ContrastWork& work) {
+    ContrastRequest request;
+    EYEBOX_ASSIGN_OR_RETURN(request.recording, OpenFolder(work.source().recording()));
+    if (work.source().has_series()) request.series = work.source().series();
+    if (work.has_scatter()) {
+      EYEBOX_ASSIGN_OR_RETURN(request.scatter, Put("scatter.json", work.scatter()));
+    }
+    return Write(MeasureContrast(request, watcher_));
+  }
+
   absl::Status Judge(const v1::VerifyWork& work) {
     VerifyRequest request;
     if (work.has_csv()) {
@@ -145,9 +158,7 @@ class Verb {
       if (work.series().has_series()) request.series = work.series().series();
     }
     if (work.has_certificate()) {
-      request.certificate = out_ / "certificate.json";  // stays, as what was judged by
-      EYEBOX_ASSIGN_OR_RETURN(const std::string json, ToJson(work.certificate()));
-      EYEBOX_RETURN_IF_ERROR(WriteFileAtomically(request.certificate, json));
+      EYEBOX_ASSIGN_OR_RETURN(request.certificate, Put("certificate.json", work.certificate()));
     }
     request.input = work.input();
     request.folder = out_;
@@ -212,7 +223,18 @@ class Verb {
     SeriesChoice choice;
     EYEBOX_ASSIGN_OR_RETURN(choice.recording, OpenFolder(source.recording()));
     if (source.has_series()) choice.series = source.series();
+    if (!source.has_scatter()) return choice;
+    EYEBOX_ASSIGN_OR_RETURN(choice.scatter.file, Put("scatter.json", source.scatter()));
+    if (source.surround() == "continued") choice.scatter.surround = optics::Surround::kContinued;
+    if (source.surround() == "dark") choice.scatter.surround = optics::Surround::kDark;
     return choice;
+  }
+
+  // What a request brought stays beside the results that came of it.
+  absl::StatusOr<fs::path> Put(const std::string& name, const google::protobuf::Message& message) {
+    EYEBOX_ASSIGN_OR_RETURN(const std::string json, ToJson(message));
+    EYEBOX_RETURN_IF_ERROR(WriteFileAtomically(out_ / name, json));
+    return out_ / name;
   }
 
   absl::StatusOr<fs::path> OpenFolder(const std::string& name) {

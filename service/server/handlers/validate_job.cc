@@ -51,6 +51,8 @@ std::vector<Source> SourcesOf(const v1::CreateJobRequest& request) {
       return {SeriesOrCsv("fit", request.fit())};
     case v1::CreateJobRequest::kScatter:
       return {SeriesOrCsv("scatter", request.scatter())};
+    case v1::CreateJobRequest::kContrast:
+      return {FolderOf("contrast.source", request.contrast().source())};
     case v1::CreateJobRequest::kVerify:
       return {SeriesOrCsv("verify", request.verify())};
     case v1::CreateJobRequest::kPredict: {
@@ -142,10 +144,32 @@ absl::Status ValidatePlan(const v1::PlanWork& work) {
   return ValidateCosts("plan.costs", work.costs());
 }
 
+// Where scatter may be taken out.
+absl::Status ValidateSeries(const std::string& field, const v1::SeriesSource& source) {
+  if (!source.surround().empty() && !source.has_scatter()) {
+    return BadField(field + ".surround", "stands without scatter",
+                    "give the scatter that is to be taken out, or leave it empty");
+  }
+  return OneOf(field + ".surround", source.surround(), {"unknown", "continued", "dark"});
+}
+
+absl::Status ValidatePlainSeries(const std::string& field, const v1::SeriesSource& source) {
+  if (!source.has_scatter() && source.surround().empty()) return absl::OkStatus();
+  return BadField(field + ".scatter", "is not taken out by this kind of job",
+                  "leave scatter and surround of the source empty");
+}
+
 absl::Status ValidateValues(const v1::CreateJobRequest& request) {
   switch (request.work_case()) {
     case v1::CreateJobRequest::kReduce:
+      EYEBOX_RETURN_IF_ERROR(ValidateSeries("reduce.source", request.reduce().source()));
       return ValidateClip("reduce.clip_sigmas", request.reduce().clip_sigmas());
+    case v1::CreateJobRequest::kUniformity:
+      return ValidateSeries("uniformity.source", request.uniformity().source());
+    case v1::CreateJobRequest::kFit:
+      return ValidateSeries("fit.series", request.fit().series());
+    case v1::CreateJobRequest::kContrast:
+      return ValidatePlainSeries("contrast.source", request.contrast().source());
     case v1::CreateJobRequest::kCube:
       if (request.cube().size() != 0 &&
           (request.cube().size() < 2 || request.cube().size() > 256)) {
@@ -154,9 +178,11 @@ absl::Status ValidateValues(const v1::CreateJobRequest& request) {
       }
       return OneOf("cube.target", request.cube().target(), {"hdrp", "pps", "resolve", "ptb"});
     case v1::CreateJobRequest::kScatter:
+      EYEBOX_RETURN_IF_ERROR(ValidatePlainSeries("scatter.series", request.scatter().series()));
       if (request.scatter().predict_deg_size() <= kMostPredictions) return absl::OkStatus();
       return BadField("scatter.predict_deg", "holds too many diameters", "give at most 1000");
     case v1::CreateJobRequest::kVerify:
+      EYEBOX_RETURN_IF_ERROR(ValidatePlainSeries("verify.series", request.verify().series()));
       return OneOf("verify.input", request.verify().input(), {"srgb", "linear"});
     case v1::CreateJobRequest::kPredict:
       return OneOf("predict.material", request.predict().material(), {"unlit", "lambertian"});

@@ -210,6 +210,48 @@ class PythonClientTest(unittest.TestCase):
         self.assertEqual(json.loads((self.folder / "priced/result.json").read_text())["source"],
                          "rec")
 
+    def test_scatter_is_measured_taken_out_and_judged_as_on_the_command_line(self):
+        from eyebox.v1 import results_pb2, scatter_pb2
+        made = run(EYEBOX, "simulate", "sim:rift-s-like", "--levels", 2, "--disks", "1,4,16",
+                   "--black-disks", "3,10", "--checkerboards", 5, "--out", self.folder / "data/haze")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        source = {"recording": "haze"}
+        scatter = self.client.create(scatter={"series": source}).message(
+            scatter_pb2.ScatterResult)
+        kernel = self.folder / "kernel.json"
+        done = run(EYEBOX, "scatter", self.folder / "data/haze", "--json")
+        kernel.write_text(done.stdout)
+        for level in ("0", "1"):
+            seen = self.client.create(reduce={"source": source, "level": float(level)}).message(
+                results_pb2.ReduceResult)
+            clean = self.client.create(reduce={"source": {
+                **source, "scatter": scatter, "surround": "continued"}, "level": float(level)})
+            maps = [path.name for path in clean.download_all(self.folder / f"clean{level}")]
+            self.assertIn("luminance_scatter_sigma.npy", maps)
+            done = run(EYEBOX, "reduce", self.folder / "data/haze", "--level", level, "--scatter",
+                       kernel, "--surround", "continued", "--json")
+            by_hand = {one["name"]: one["value"] for one in json.loads(done.stdout)["parameters"]}
+            value = {one.name: one.value for one in clean.message(
+                results_pb2.ReduceResult).parameters}
+            self.assertNotIn("scatter_removed_share", [one.name for one in seen.parameters])
+            self.assertEqual(value["mean"], by_hand["mean"])
+        contrast = self.client.create(contrast={"source": source, "scatter": scatter}).message(
+            scatter_pb2.ContrastResult)
+        done = run(EYEBOX, "contrast", self.folder / "data/haze", "--scatter", kernel, "--json")
+        figures = json.loads(done.stdout)["figures"]
+        self.assertEqual([one.name for one in contrast.figures], [one["name"] for one in figures])
+        self.assertEqual([one.value for one in contrast.figures], [one["value"] for one in figures])
+        self.assertIn("checkerboard_contrast_of_display", [one["name"] for one in figures])
+        for verb, work, where in (
+                ("contrast", {"source": {**source, "scatter": scatter}}, "contrast.source.scatter"),
+                ("reduce", {"source": {**source, "surround": "dark"}}, "reduce.source.surround"),
+                ("uniformity", {"source": {**source, "scatter": scatter, "surround": "light"}},
+                 "uniformity.source.surround")):
+            with self.subTest(where), self.assertRaises(eyebox.InvalidRequest) as caught:
+                self.client.create(**{verb: work})
+            self.assertEqual(caught.exception.where, where)
+        shutil.rmtree(self.folder / "data/haze")
+
     def test_plans_and_prices_that_make_no_sense_are_refused_by_field(self):
         sim = {"name": "rift-s-like", "camera_uri": "sim:rift-s-like", "seed": 1}
         plan = {"scene": "scene.textproto", "simulated": sim}

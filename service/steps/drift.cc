@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <utility>
 
@@ -21,6 +22,8 @@ constexpr double kOutlierSigmas = 6;
 constexpr double kSmallestOutlier = 0.005;  // relative
 constexpr double kMadToSigma = 1.4826;      // of a normal distribution
 constexpr size_t kMostOutliers = 3;         // that are named
+// Fewer conversions may all fall between two flashes of a display.
+constexpr int64_t kFewestConversions = 16;
 
 std::string Describe(const optics::Drift& drift, const std::string& seen_by) {
   return absl::StrFormat(
@@ -82,6 +85,8 @@ void WarnOfOutliers(const DriftSource& photodiode, MeasuredDrift& measured) {
   const double sigma = kMadToSigma * sizes[sizes.size() / 2];
   size_t found = 0;
   for (size_t i = 0; i < departures.size(); ++i) {
+    const int64_t conversions = photodiode.captures[i]->sample_count;
+    if (conversions > 0 && conversions < kFewestConversions) continue;  // 0: stated by the frames
     if (std::abs(departures[i]) <= std::max(kOutlierSigmas * sigma, kSmallestOutlier)) continue;
     if (++found > kMostOutliers) continue;
     measured.warnings.push_back(absl::StrFormat(

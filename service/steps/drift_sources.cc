@@ -23,6 +23,9 @@ constexpr double kHighestMean = 0.75;
 constexpr size_t kFewestDegrees = 4;
 constexpr double kDimmest = 0.1;  // of the brightest reading
 constexpr double kQuantisationCounts = 0.29;
+// Less above the zero, in counts and as a share of it, is none.
+constexpr double kLeastSignalCounts = 3;
+constexpr double kLeastSignal = 0.01;
 constexpr int kScatterSteps = 4;
 
 using Entries = std::vector<const capture::CaptureEntry*>;
@@ -121,12 +124,14 @@ absl::Status ReadStimuli(capture::RecordingReader& recording, DriftSource& sourc
   return absl::OkStatus();
 }
 
-void KeepBright(double zero_counts, DriftSource& source) {
+// Readings above the zero, without dim ones. False if none stands out from the zero.
+bool KeepBright(double zero_counts, DriftSource& source) {
   double brightest = 0;
   for (optics::DriftReading& reading : source.readings) {
     reading.value -= zero_counts;
     brightest = std::max(brightest, reading.value);
   }
+  if (brightest <= std::max(kLeastSignalCounts, kLeastSignal * std::abs(zero_counts))) return false;
   DriftSource kept{.present = source.present};
   for (size_t i = 0; i < source.readings.size(); ++i) {
     if (source.readings[i].value <= kDimmest * brightest) continue;
@@ -134,6 +139,7 @@ void KeepBright(double zero_counts, DriftSource& source) {
     kept.captures.push_back(source.captures[i]);
   }
   source = std::move(kept);
+  return true;
 }
 
 size_t DegreesOf(const std::vector<optics::DriftReading>& readings) {
@@ -187,8 +193,11 @@ absl::StatusOr<DriftSource> PhotodiodeReadings(capture::RecordingReader& recordi
     source.obstacle = "it was not read during the darks, which tell its zero";
     return source;
   }
-  KeepBright(*zero_counts, source);
-  if (DegreesOf(source.readings) < kFewestDegrees) {
+  if (source.readings.empty()) {
+    source.obstacle = "all its readings are clipped: lower its gain";
+  } else if (!KeepBright(*zero_counts, source)) {
+    source.obstacle = "it reads the same with light and without";
+  } else if (DegreesOf(source.readings) < kFewestDegrees) {
     source.obstacle = "too few stimuli were read more than once";
   } else if (!TimesAscend(source.readings)) {
     source.obstacle = "the machine was restarted in between, and the times do not connect";

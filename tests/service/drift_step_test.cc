@@ -207,12 +207,19 @@ TEST_F(DriftStep, FlashesOutOfStepWithTheCapturesAreNoDrift) {
   EXPECT_THAT(both.warnings, ElementsAre(HasSubstr("seen by")));
 }
 
+TEST_F(DriftStep, APhotodiodeThatSeesNoLightIsNotUsed) {
+  const auto blind = [](const CaptureSpec&, int64_t) { return 0.0; };
+  const auto measured = *MeasureDrift(*Record("blind", 0, 0, blind));
+  EXPECT_EQ(measured.drift.order, 0);
+  EXPECT_THAT(measured.warnings, ElementsAre(HasSubstr("the same with light and without")));
+}
+
 TEST_F(DriftStep, AClippedPhotodiodeIsNotUsed) {
   const auto clipped = [](const CaptureSpec&, int64_t) { return 1e5; };
   const auto measured = *MeasureDrift(*Record("clipped", 0, 0, clipped));
   EXPECT_EQ(measured.drift.order, 0);
   EXPECT_THAT(measured.warnings,
-              ElementsAre(AllOf(HasSubstr("by the photodiode"), HasSubstr("too few stimuli"))));
+              ElementsAre(AllOf(HasSubstr("by the photodiode"), HasSubstr("are clipped"))));
 }
 
 TEST_F(DriftStep, WithoutReferencesThereIsNothingToSay) {

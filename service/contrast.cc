@@ -24,8 +24,10 @@ absl::StatusOr<MeasuredGlare> Measure(const ContrastRequest& request,
 absl::StatusOr<v1::ContrastResult> MeasureContrast(const ContrastRequest& request,
                                                    const Watcher& watcher) {
   std::optional<optics::KnownGlare> instrument;
+  bool alone = false;
   if (!request.scatter.empty()) {
     EYEBOX_ASSIGN_OR_RETURN(instrument, ReadKnownGlare(request.scatter));
+    EYEBOX_ASSIGN_OR_RETURN(alone, IsOfInstrumentAlone(request.scatter));
   }
   const auto glare = Measure(request, instrument, watcher);
   if (!glare.ok()) return Within(request.recording, glare.status());
@@ -42,6 +44,11 @@ absl::StatusOr<v1::ContrastResult> MeasureContrast(const ContrastRequest& reques
     result.add_warnings(
         "the instrument's scatter is not known: it is part of every contrast and glare here; "
         "measure it on a flat display (eyebox scatter) and give it as --scatter");
+  }
+  if (instrument && !alone) {
+    result.add_warnings(
+        "the scatter that was taken out was fitted without a reference: if a headset stood before "
+        "the camera then, its own glare is taken out too");
   }
   if (watcher.progress) watcher.progress({1, "done"});
   return result;

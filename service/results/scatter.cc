@@ -144,6 +144,12 @@ void AddScatterRemoval(const optics::GlareRemovalFigures& figures, v1::ReduceRes
   AddParameter(parameters, "scatter_below_floor_share", figures.below_floor_share, 0, "1");
 }
 
+absl::StatusOr<bool> IsOfInstrumentAlone(const std::filesystem::path& file) {
+  v1::ScatterResult result;
+  EYEBOX_RETURN_IF_ERROR(ReadJson(file, result));
+  return result.has_instrument();
+}
+
 absl::StatusOr<optics::KnownGlare> ReadKnownGlare(const std::filesystem::path& file) {
   v1::ScatterResult result;
   EYEBOX_RETURN_IF_ERROR(ReadJson(file, result));

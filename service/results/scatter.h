@@ -32,6 +32,10 @@ void AddGlareFigures(const MeasuredGlare& glare,
 // scatter_removed_share, scatter_floor_median, scatter_below_floor_share among the parameters.
 void AddScatterRemoval(const optics::GlareRemovalFigures& figures, v1::ReduceResult& result);
 
+// Whether the kernel that ReadKnownGlare() takes was told apart from the headset's by a reference
+// series. Errors: those of reading.
+absl::StatusOr<bool> IsOfInstrumentAlone(const std::filesystem::path& file);
+
 // The kernel to take out of a camera's images, from what `eyebox scatter --json` printed: the
 // instrument's where a reference told it, else that of headset and instrument together.
 // `pitch_deg` and `surround` are left to the caller.

@@ -41,6 +41,12 @@ def requests():
     put("requests", "job-tradeoff", b"\x08" + field(1, "id-4") + field(12, field(1, rig)))
     put("requests", "job-plan",
         b"\x08" + field(1, "id-5") + field(13, field(1, "scene.textproto") + field(2, rig)))
+    scatter = field(2, field(1, "gaussian") + field(2, "moffat"))
+    series = field(1, "a/b")
+    put("requests", "job-contrast",
+        b"\x08" + field(1, "id-6") + field(14, field(1, series) + field(2, scatter)))
+    put("requests", "job-reduce-scatter", b"\x08" + field(1, "id-7") + field(
+        3, field(1, series + field(3, scatter) + field(4, "dark"))))
     put("requests", "preview", b"\x09" + field(2, rig) + b"\x28\x40")  # most_width_px 64
 
 

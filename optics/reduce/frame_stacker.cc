@@ -104,7 +104,7 @@ absl::Status FrameStacker::Add(const FrameView& frame, std::optional<double> tem
     return BadInput(where, absl::StrCat("a count is above ", range_.FullScaleDn(), " DN"),
                     absl::StrCat("state more significant bits than ", range_.bits));
   }
-  if (temperature_deg_c) {
+  if (temperature_deg_c && std::isfinite(*temperature_deg_c)) {
     ++temperatures_;
     temperature_sum_ += *temperature_deg_c;
   }

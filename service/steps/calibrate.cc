@@ -1,6 +1,7 @@
 #include "service/steps/calibrate.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <optional>
 #include <span>
@@ -29,7 +30,8 @@ absl::StatusOr<std::vector<Entries>> ByTemperature(capture::RecordingReader& rec
   std::vector<std::pair<std::optional<double>, const capture::CaptureEntry*>> known;
   for (const capture::CaptureEntry* entry : captures) {
     EYEBOX_ASSIGN_OR_RETURN(const FrameMetadata first, FirstMetadata(recording, *entry));
-    known.emplace_back(first.temperature_degC, entry);
+    const bool told = first.temperature_degC && std::isfinite(*first.temperature_degC);
+    known.emplace_back(told ? first.temperature_degC : std::nullopt, entry);
   }
   std::ranges::stable_sort(known, {}, [](const auto& dark) { return dark.first; });
   std::vector<Entries> groups;

@@ -200,7 +200,7 @@ absl::StatusOr<DriftSource> PhotodiodeReadings(capture::RecordingReader& recordi
   } else if (DegreesOf(source.readings) < kFewestDegrees) {
     source.obstacle = "too few stimuli were read more than once";
   } else if (!TimesAscend(source.readings)) {
-    source.obstacle = "the machine was restarted in between, and the times do not connect";
+    source.obstacle = "its readings have no times that ascend, as after a restart of the machine";
   } else {
     EYEBOX_RETURN_IF_ERROR(LearnScatter(source.readings));
   }

@@ -48,8 +48,9 @@ absl::StatusOr<std::optional<PhotodiodeMean>> StatedByFrames(capture::RecordingR
                                                              const capture::CaptureEntry& entry) {
   PhotodiodeMean mean;
   EYEBOX_RETURN_IF_ERROR(recording.VisitFrames(entry, [&mean](const Frame& frame) {
-    if (!frame.metadata.photodiode_counts) return absl::OkStatus();
-    mean.counts += *frame.metadata.photodiode_counts;
+    const std::optional<double>& counts = frame.metadata.photodiode_counts;
+    if (!counts || !std::isfinite(*counts)) return absl::OkStatus();
+    mean.counts += *counts;
     ++mean.readings;
     return absl::OkStatus();
   }));

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
 
 #include "tests/optics/forward_model.h"
 
@@ -135,6 +138,19 @@ TEST_F(MatchDarkTest, ADarkTooFarAwayIsRefusedWithBothTemperatures) {
               AllOf(HasSubstr("taken at 31 degC"), HasSubstr("nearest dark at 25 degC"),
                     HasSubstr("record darks between the lights")));
   EXPECT_TRUE(DarkFor(calibration_, kShort, 31).ok()) << "0.1 DN there, which nobody sees";
+}
+
+TEST_F(MatchDarkTest, AStackHasATemperatureWhereAllFramesTellOne) {
+  const Image<uint16_t> frame(kSize, 100);
+  const FrameView view{frame.pixels(), frame.size()};
+  const auto stacked = [&](const std::vector<std::optional<double>>& temperatures) {
+    FrameStacker stacker(kLong, camera_.Range());
+    for (const auto& temperature : temperatures) EXPECT_TRUE(stacker.Add(view, temperature).ok());
+    return stacker.Finish()->temperature_degC;
+  };
+  EXPECT_EQ(stacked({25, 27}), 26);
+  EXPECT_EQ(stacked({25, std::nullopt}), std::nullopt);
+  EXPECT_EQ(stacked({25, std::numeric_limits<double>::quiet_NaN()}), std::nullopt);
 }
 
 TEST_F(MatchDarkTest, ALightWithoutATemperatureNeedsDarksThatAgree) {

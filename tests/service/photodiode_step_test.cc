@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "capture/photodiode/sim/strobe_light.h"
@@ -80,7 +82,7 @@ TEST(PhotodiodeReading, OnTheRailIsClipped) {
 
 TEST(PhotodiodeReading, OfImportedFramesIsTheMeanOfWhatTheyState) {
   OneCapture capture;
-  capture.stated = {10, 30, std::nullopt, 50};
+  capture.stated = {10, 30, std::nullopt, std::numeric_limits<double>::quiet_NaN(), 50};
   EXPECT_EQ(capture.Read()->counts, 30);
   EXPECT_EQ(capture.Read()->readings, 3);
 }

@@ -144,6 +144,7 @@ class PlanBuilder {
     for (const double side : options_.checkerboard_squares_deg) {
       AddGlareStimulus(StimulusPattern::kCheckerboard, side, options_.disk_drive);
     }
+    if (options_.reference_every > 0) AddReference();
   }
 
   CapturePlan Finish() { return std::move(plan_); }

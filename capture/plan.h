@@ -33,8 +33,9 @@ struct PlanOptions {
   double flat_luminance_cd_m2 = 9;
   double flat_luminance_relative_sigma = 0.02;  // of the photometer that read the reference
   uint64_t seed = 1;                            // of the order of levels
-  // A grey patch comes back before the first level, after every so many and after the last, in the
-  // shortest exposure, which nothing saturates. It shows drift and whether the headset slept.
+  // A grey patch comes back before the first level, after every so many and after the last, and
+  // after disks and checkerboards, in the shortest exposure, which nothing saturates. It shows
+  // drift and whether the headset slept.
   int reference_every = 0;  // levels; 0: no reference
   double reference_drive = 0.5;
   int reference_repeats = 4;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,7 @@
 #include "service/results/scatter.h"
 #include "service/results/uniformity.h"
 #include "service/steps/calibrate.h"
+#include "service/steps/drift.h"
 #include "service/steps/known_geometry.h"
 #include "service/steps/known_scale.h"
 #include "service/steps/levels.h"
@@ -95,9 +97,19 @@ absl::StatusOr<v1::ReduceResult> Reduce(const SeriesChoice& choice, std::optiona
   EYEBOX_ASSIGN_OR_RETURN(optics::ReducedLevel level,
                           ReduceCaptures(*bench.reader, *group, bench.calibration, choice.bracket));
   EYEBOX_ASSIGN_OR_RETURN(const auto glare, TakeScatterOut(bench.glare, level));
+  EYEBOX_ASSIGN_OR_RETURN(const MeasuredDrift drift, MeasureDrift(*bench.reader));
+  EYEBOX_ASSIGN_OR_RETURN(
+      const auto corrected,
+      CorrectForDriftWithin(*bench.reader, group->captures, drift.drift, level.luminance));
   EYEBOX_ASSIGN_OR_RETURN(v1::ReduceResult result,
                           DescribeReduction(level, bench.calibration, bench.series, folder));
   if (glare) AddScatterRemoval(*glare, result);
+  result.mutable_warnings()->Add(drift.warnings.begin(), drift.warnings.end());
+  if (!corrected) {
+    result.add_warnings(
+        "the stimulus was shown before or after all readings of the drift, and is not corrected "
+        "for it");
+  }
   if (!drive && groups.size() > 1) {
     result.add_warnings(absl::StrCat("the series shows ", groups.size(),
                                      " stimuli; this is the first that was recorded, drive ",

@@ -58,6 +58,7 @@ absl::Status CheckReadings(std::span<const DriftReading> readings) {
 }
 
 struct TimeAxis {
+  double first_s = 0;
   double middle_s = 0;
   double half_span_s = 0;
 };
@@ -78,7 +79,8 @@ absl::StatusOr<TimeAxis> AxisOf(std::span<const DriftReading> readings) {
   }
   double sum_s = 0;  // from the first, lest large times lose digits
   for (const DriftReading& reading : readings) sum_s += reading.time_s - first->time_s;
-  return TimeAxis{first->time_s + sum_s / static_cast<double>(readings.size()), half_span_s};
+  return TimeAxis{first->time_s, first->time_s + sum_s / static_cast<double>(readings.size()),
+                  half_span_s};
 }
 
 // factor(x) = 1 + c[0] x + ..., with a level for every series.
@@ -214,6 +216,7 @@ absl::StatusOr<Drift> FitDrift(std::span<const DriftReading> readings) {
   EYEBOX_RETURN_IF_ERROR(CheckReadings(readings));
   EYEBOX_ASSIGN_OR_RETURN(const TimeAxis axis, AxisOf(readings));
   Drift drift;
+  drift.first_s = axis.first_s;
   drift.middle_s = axis.middle_s;
   drift.half_span_s = axis.half_span_s;
   drift.readings = static_cast<int>(readings.size());

@@ -21,8 +21,9 @@ struct DriftReading {
 // at t, relative to the mean time of the readings. Inside the readings x is -1 to 1 or a little
 // more.
 struct Drift {
-  int order = 0;  // 0: no drift is borne out, both coefficients are 0
-  double middle_s = 0;
+  int order = 0;        // 0: no drift is borne out, both coefficients are 0
+  double first_s = 0;   // time of the first reading; the last is 2 half_span_s later
+  double middle_s = 0;  // mean of all
   double half_span_s = 1;
   double linear = 0;
   double quadratic = 0;

@@ -21,6 +21,7 @@ constexpr double kAgreementSigmas = 4;
 constexpr double kOutlierSigmas = 6;
 constexpr double kSmallestOutlier = 0.005;  // relative
 constexpr double kMadToSigma = 1.4826;      // of a normal distribution
+constexpr double kBeyond = 0.2;             // of half the span of the readings
 constexpr size_t kMostOutliers = 3;         // that are named
 // Fewer conversions may all fall between two flashes of a display.
 constexpr int64_t kFewestConversions = 16;
@@ -134,6 +135,28 @@ absl::StatusOr<double> TimeOf(capture::RecordingReader& recording,
     sum_s += static_cast<double>(first.monotonic_time_ns) / kNs;
   }
   return sum_s / static_cast<double>(captures.size());
+}
+
+absl::StatusOr<double> CorrectForDrift(capture::RecordingReader& recording,
+                                       const std::vector<const capture::CaptureEntry*>& captures,
+                                       const optics::Drift& drift,
+                                       optics::LuminanceImage& luminance) {
+  if (drift.order == 0) return 0.0;
+  EYEBOX_ASSIGN_OR_RETURN(const double time_s, TimeOf(recording, captures));
+  optics::CorrectDrift(drift, time_s, luminance);
+  return drift.SigmaAt(time_s) / drift.FactorAt(time_s);
+}
+
+absl::StatusOr<std::optional<double>> CorrectForDriftWithin(
+    capture::RecordingReader& recording, const std::vector<const capture::CaptureEntry*>& captures,
+    const optics::Drift& drift, optics::LuminanceImage& luminance) {
+  if (drift.order == 0) return 0.0;
+  EYEBOX_ASSIGN_OR_RETURN(const double time_s, TimeOf(recording, captures));
+  if (time_s < drift.first_s - kBeyond * drift.half_span_s ||
+      time_s > drift.first_s + (2 + kBeyond) * drift.half_span_s) {
+    return std::nullopt;
+  }
+  return CorrectForDrift(recording, captures, drift, luminance);
 }
 
 absl::StatusOr<MeasuredDrift> MeasureDrift(capture::RecordingReader& recording) {

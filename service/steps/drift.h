@@ -3,6 +3,7 @@
 #ifndef EYEBOX_SERVICE_STEPS_DRIFT_H_
 #define EYEBOX_SERVICE_STEPS_DRIFT_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,20 @@ struct MeasuredDrift {
 // warning. A recording without either source has no drift and no warning.
 // Errors: those of reading.
 absl::StatusOr<MeasuredDrift> MeasureDrift(capture::RecordingReader& recording);
+
+// Corrects what was read in `captures` to the middle of the recording; returns the relative
+// standard uncertainty of that, 0 where there is no drift. What was taken beyond the readings of
+// the drift by more than a tenth of their span stays as it is, and comes back empty: drift is not
+// extrapolated. Errors: those of reading.
+absl::StatusOr<std::optional<double>> CorrectForDriftWithin(
+    capture::RecordingReader& recording, const std::vector<const capture::CaptureEntry*>& captures,
+    const optics::Drift& drift, optics::LuminanceImage& luminance);
+
+// The same, however far beyond: of levels, which have references before and after them.
+absl::StatusOr<double> CorrectForDrift(capture::RecordingReader& recording,
+                                       const std::vector<const capture::CaptureEntry*>& captures,
+                                       const optics::Drift& drift,
+                                       optics::LuminanceImage& luminance);
 
 // CLOCK_MONOTONIC of the first frame of each capture, averaged: when a bracket was taken. It takes
 // seconds, in which no display drifts. `captures` is not empty. Errors: those of reading.

@@ -13,6 +13,7 @@
 #include "capture/plan.h"
 #include "optics/scatter/remove_glare.h"
 #include "service/steps/captures.h"
+#include "service/steps/drift.h"
 #include "service/steps/levels.h"
 
 namespace eyebox::service {
@@ -57,15 +58,19 @@ absl::StatusOr<std::string> GlareSeriesOf(const capture::RecordingReader& record
 
 absl::Status AddReadings(const Stimulus& stimulus, const optics::MeasuredImage& image,
                          const optics::Calibration& calibration, const GlareOptions& options,
-                         MeasuredGlare& glare) {
+                         double drift_relative_sigma, MeasuredGlare& glare) {
   const bool field = stimulus.pattern == StimulusPattern::kFullField;
   const bool lit = DriveOf(stimulus) > kSameDrive;
   const bool bright_disk = stimulus.pattern == StimulusPattern::kDisk || (field && !lit);
   EYEBOX_ASSIGN_OR_RETURN(
-      const auto readings,
+      auto readings,
       fit::ReadDisk(image, calibration, glare.aim,
                     bright_disk ? fit::GlarePattern::kBrightDisk : fit::GlarePattern::kBlackDisk,
                     field ? 0 : OnPlane(stimulus.diameter_deg), options.reading));
+  for (fit::GlareReading& reading : readings) {
+    reading.luminance_sigma =
+        std::hypot(reading.luminance_sigma, drift_relative_sigma * reading.luminance);
+  }
   glare.series.readings.insert(glare.series.readings.end(), readings.begin(), readings.end());
   return absl::OkStatus();
 }
@@ -107,10 +112,29 @@ absl::StatusOr<CheckerboardFigure> MeasureBoard(
   return figure;
 }
 
+struct SeenSpot {
+  double diameter_deg = 0;  // on the plane
+  optics::LuminanceImage image;
+  double drift_relative_sigma = 0;
+};
+
 struct SeenStimuli {
   std::optional<optics::LuminanceImage> black;
-  std::vector<std::pair<double, optics::LuminanceImage>> spots;  // by diameter on the plane
+  std::vector<SeenSpot> spots;
+  double bright_drift_relative_sigma = 0;  // the black field's is nothing beside its noise
 };
+
+void Keep(const Stimulus& stimulus, optics::LuminanceImage image, double drift_relative_sigma,
+          SeenStimuli& seen, MeasuredGlare& glare) {
+  if (stimulus.pattern == StimulusPattern::kBlackDisk) {
+    seen.spots.push_back({OnPlane(stimulus.diameter_deg), std::move(image), drift_relative_sigma});
+  } else if (stimulus.pattern == StimulusPattern::kFullField && DriveOf(stimulus) > kSameDrive) {
+    glare.bright_field = std::move(image);
+    seen.bright_drift_relative_sigma = drift_relative_sigma;
+  } else if (stimulus.pattern == StimulusPattern::kFullField) {
+    seen.black = std::move(image);
+  }
+}
 
 absl::Status AddFigures(const SeenStimuli& seen, const GlareOptions& options,
                         const std::optional<optics::KnownGlare>& instrument, MeasuredGlare& glare) {
@@ -119,12 +143,16 @@ absl::Status AddFigures(const SeenStimuli& seen, const GlareOptions& options,
   if (seen.black) {
     EYEBOX_ASSIGN_OR_RETURN(glare.full_field_contrast,
                             optics::FullFieldContrast(*glare.bright_field, *seen.black, disk));
+    optics::ContrastFigure& figure = *glare.full_field_contrast;
+    figure.sigma = std::hypot(figure.sigma, seen.bright_drift_relative_sigma * figure.contrast);
   }
   const auto kernel = instrument ? std::optional(instrument->kernel) : std::nullopt;
-  for (const auto& [diameter_deg, image] : seen.spots) {
+  for (const auto& [diameter_deg, image, drift_relative_sigma] : seen.spots) {
     const optics::BlackSpot spot{disk, diameter_deg, options.field_radius_deg};
-    EYEBOX_ASSIGN_OR_RETURN(const optics::GlareFigure figure,
+    EYEBOX_ASSIGN_OR_RETURN(optics::GlareFigure figure,
                             optics::BlackSpotGlare(image, *glare.bright_field, spot, kernel));
+    figure.sigma = std::hypot(figure.sigma, figure.share * drift_relative_sigma,
+                              figure.share * seen.bright_drift_relative_sigma);
     glare.black_spots.push_back({diameter_deg, figure});
   }
   return absl::OkStatus();
@@ -173,6 +201,9 @@ absl::StatusOr<MeasuredGlare> MeasureGlare(capture::RecordingReader& recording,
     camera->surround = options.surround;
   }
   SeenStimuli seen;
+  EYEBOX_ASSIGN_OR_RETURN(const MeasuredDrift drift, MeasureDrift(recording));
+  glare.warnings.insert(glare.warnings.end(), drift.warnings.begin(), drift.warnings.end());
+  bool beyond = false;
   for (size_t i = 0; i < groups.size(); ++i) {
     EYEBOX_RETURN_IF_ERROR(
         watcher.Reach(static_cast<double>(i) / static_cast<double>(groups.size()),
@@ -180,20 +211,24 @@ absl::StatusOr<MeasuredGlare> MeasureGlare(capture::RecordingReader& recording,
     const Stimulus& stimulus = groups[i].stimulus;
     EYEBOX_ASSIGN_OR_RETURN(optics::ReducedLevel level,
                             ReduceCaptures(recording, groups[i], calibration));
+    EYEBOX_ASSIGN_OR_RETURN(
+        const auto drift_sigma,
+        CorrectForDriftWithin(recording, groups[i].captures, drift.drift, level.luminance));
+    beyond = beyond || !drift_sigma;
     glare.series.luminance_unit = level.luminance.image.unit;
     if (stimulus.pattern == StimulusPattern::kCheckerboard) {
       EYEBOX_ASSIGN_OR_RETURN(glare.checkerboards.emplace_back(),
                               MeasureBoard(level.luminance, stimulus.diameter_deg, glare, camera));
       continue;
     }
-    EYEBOX_RETURN_IF_ERROR(
-        AddReadings(stimulus, level.luminance.image, calibration, options, glare));
-    if (stimulus.pattern == StimulusPattern::kBlackDisk) {
-      seen.spots.emplace_back(OnPlane(stimulus.diameter_deg), std::move(level.luminance));
-    } else if (stimulus.pattern == StimulusPattern::kFullField) {
-      (DriveOf(stimulus) > kSameDrive ? glare.bright_field : seen.black) =
-          std::move(level.luminance);
-    }
+    EYEBOX_RETURN_IF_ERROR(AddReadings(stimulus, level.luminance.image, calibration, options,
+                                       drift_sigma.value_or(0), glare));
+    Keep(stimulus, std::move(level.luminance), drift_sigma.value_or(0), seen, glare);
+  }
+  if (beyond) {
+    glare.warnings.emplace_back(
+        "some stimuli were shown before or after all readings of the drift, and are not corrected "
+        "for it");
   }
   EYEBOX_RETURN_IF_ERROR(AddFigures(seen, options, camera, glare));
   return glare;

@@ -53,16 +53,6 @@ absl::Status InLevel(const StimulusCaptures& group, const absl::Status& status) 
   return absl::Status(status.code(), absl::StrCat(NameOf(group), ": ", status.message()));
 }
 
-// Corrects for what the display lost until then; returns the relative sigma of that.
-absl::StatusOr<double> CorrectForDrift(capture::RecordingReader& recording,
-                                       const StimulusCaptures& group, const optics::Drift& drift,
-                                       optics::LuminanceImage& luminance) {
-  if (drift.order == 0) return 0.0;
-  EYEBOX_ASSIGN_OR_RETURN(const double time_s, TimeOf(recording, group.captures));
-  optics::CorrectDrift(drift, time_s, luminance);
-  return drift.SigmaAt(time_s) / drift.FactorAt(time_s);
-}
-
 void AddToStack(const optics::ReducedLevel& level, double drive,
                 const optics::Calibration& calibration, MeasuredLevels& levels) {
   const optics::MeasuredImage& image = level.luminance.image;
@@ -155,8 +145,9 @@ absl::StatusOr<MeasuredLevels> ReduceGreyLevels(capture::RecordingReader& record
     EYEBOX_ASSIGN_OR_RETURN(const auto figures, TakeScatterOut(glare, *reduced));
     const double drive = DriveOf(groups[i]);
     scale_relative_sigma = reduced->luminance.scale_relative_sigma;
-    EYEBOX_ASSIGN_OR_RETURN(const double drift_sigma,
-                            CorrectForDrift(recording, groups[i], drift.drift, reduced->luminance));
+    EYEBOX_ASSIGN_OR_RETURN(
+        const double drift_sigma,
+        CorrectForDrift(recording, groups[i].captures, drift.drift, reduced->luminance));
     readings.push_back(ReadReferenceDisk(reduced->luminance, calibration, drive));
     readings.back().relative_sigma = drift_sigma;
     levels.shares.push_back({reduced->report.budget, drift_sigma});

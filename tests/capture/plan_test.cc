@@ -178,6 +178,9 @@ TEST(GreyPlan, DisksFollowTheLevelsWithTheFieldsThatTheyNeed) {
                                           {StimulusPattern::kCheckerboard, 4, bright}};
   EXPECT_EQ(glare, expected);
   EXPECT_EQ(plan->captures.back().series, kGlareSeries);
+  const auto referenced = MakeGreyPlan({.reference_every = 4, .disk_diameters_deg = {1}});
+  ASSERT_TRUE(referenced.ok());
+  EXPECT_EQ(referenced->captures.back().role, CaptureRole::kReference) << "after the disks too";
   EXPECT_THAT(std::string(MakeGreyPlan({.disk_diameters_deg = {0}}).status().message()),
               HasSubstr("disk_diameters_deg"));
 }

@@ -12,12 +12,14 @@
 #include "service/contrast.h"
 #include "service/scatter.h"
 #include "service/steps/record_plan.h"
+#include "tests/support/restless_display.h"
 #include "tests/support/temporary_folder.h"
 
 namespace eyebox::service {
 namespace {
 
 using testing::AllOf;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -25,14 +27,22 @@ constexpr double kTailEndsDeg = 20.85;  // 80 px
 
 class Contrast : public testing::Test {
  protected:
+  // Every frame takes 10 ms of the clock. `lost_per_s` of the light is lost in a second.
   std::filesystem::path Record(const std::string& name, double tail_share,
-                               const capture::PlanOptions& plan) {
-    const ManualClock clock;
+                               const capture::PlanOptions& plan, double lost_per_s = 0) {
+    ManualClock clock;
     capture::SimParameters parameters;
     parameters.scatter.tail_weight = tail_share;
     auto rig =
         OpenSimRig({.name = name, .camera_uri = "sim:rift-s-like", .seed = 5}, parameters, &clock);
     EXPECT_TRUE(rig.ok()) << rig.status();
+    if (lost_per_s > 0) {
+      const auto fades = [lost_per_s](const capture::DisplayMoment& moment) {
+        return capture::DisplayFault{.factor =
+                                         1 - lost_per_s * static_cast<double>(moment.now_ns) / 1e9};
+      };
+      capture::MakeRestless(*rig, clock, parameters.sensor.bias_dn, fades);
+    }
     const auto report = RecordPlan(*rig, *capture::MakeGreyPlan(plan), folder_.path() / name, {});
     EXPECT_TRUE(report.ok()) << report.status();
     return folder_.path() / name;
@@ -93,6 +103,23 @@ TEST_F(Contrast, WithoutTheInstrumentsScatterItSaysSo) {
   EXPECT_THAT(result.warnings(), ElementsAre(HasSubstr("scatter is not known")));
   EXPECT_NEAR(Named(result, "full_field_contrast").value(), 59 / 0.19, 10);
   EXPECT_EQ(Named(result, "black_spot_glare").instrument_share(), 0);
+}
+
+TEST_F(Contrast, ADisplayThatFadesMeanwhileIsCorrectedForIt) {
+  capture::PlanOptions plan = {.levels = 5,
+                               .reference_every = 1,
+                               .disk_diameters_deg = {1, 2, 4, 8, 16, 24},
+                               .black_disk_diameters_deg = {5}};
+  const auto share = [](const v1::ContrastResult& result) {
+    return Named(result, "black_spot_glare");
+  };
+  const v1::GlareFigure steady = share(Measured(Record("steady", 0.02, plan), {}));
+  const auto fading = Measured(Record("fading", 0.02, plan, 0.04), {});
+  EXPECT_THAT(fading.warnings(), Contains(HasSubstr("the display drifted")));
+  EXPECT_NEAR(share(fading).value() / steady.value(), 1, 0.01);
+  plan.reference_every = 0;
+  const v1::GlareFigure unseen = share(Measured(Record("unseen", 0.02, plan, 0.04), {}));
+  EXPECT_LT(unseen.value() / steady.value(), 0.98) << "the drift is worth correcting";
 }
 
 TEST_F(Contrast, ARecordingWithoutItIsToldWhatToRecord) {

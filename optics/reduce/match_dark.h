@@ -28,9 +28,10 @@ double ThermalErrorDn(const DarkFrame& dark, double temperature_deg_c, const Noi
 
 // Where darks of several temperatures were recorded: the nearest, or the weighted mean of two that
 // enclose the light's, whichever may be off by less. The variance of the dark counts that error
-// once it is above a twentieth of the temporal dark noise of a frame; its history says so.
-// Errors: those of FindDark(); FailedPrecondition (the error may exceed the temporal dark noise:
-// names both temperatures. Or the light tells none, and the darks differ by that much).
+// once it is above a twentieth of the temporal dark noise of a frame; its history says so. Where a
+// dark of the setting tells no temperature the first one is taken, as from a camera that never
+// does. Errors: those of FindDark(); FailedPrecondition (the error may exceed the temporal dark
+// noise: names both temperatures. Or the light tells none, and the darks differ by that much).
 absl::StatusOr<std::shared_ptr<const DarkFrame>> DarkFor(const Calibration& calibration,
                                                          const Setting& setting,
                                                          std::optional<double> temperature_deg_c);

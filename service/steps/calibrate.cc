@@ -29,6 +29,7 @@ absl::StatusOr<std::vector<Entries>> ByTemperature(capture::RecordingReader& rec
                                                    const Entries& captures) {
   std::vector<std::pair<std::optional<double>, const capture::CaptureEntry*>> known;
   for (const capture::CaptureEntry* entry : captures) {
+    if (entry->frame_count == 0) continue;  // it stopped before its first frame
     EYEBOX_ASSIGN_OR_RETURN(const FrameMetadata first, FirstMetadata(recording, *entry));
     const bool told = first.temperature_degC && std::isfinite(*first.temperature_degC);
     known.emplace_back(told ? first.temperature_degC : std::nullopt, entry);

@@ -89,8 +89,9 @@ absl::StatusOr<FrameMetadata> FirstMetadata(capture::RecordingReader& recording,
     first = frame.metadata;
     return absl::CancelledError("one frame tells");
   });
-  if (!first) return status;
-  return *first;
+  if (first) return *first;
+  if (!status.ok()) return status;
+  return Rejected(entry.file.string(), "it holds no whole frame", "record the stimulus again");
 }
 
 absl::StatusOr<std::vector<optics::Stack>> StackCaptures(

@@ -33,7 +33,8 @@ absl::StatusOr<std::vector<StimulusCaptures>> LightCaptures(
 absl::StatusOr<std::vector<StimulusCaptures>> GreyLevels(const capture::RecordingReader& recording,
                                                          const std::string& series);
 
-// Of the first whole frame of a capture. Errors: those of reading.
+// Of the first whole frame of a capture. Errors: those of reading; FailedPrecondition (it holds
+// none).
 absl::StatusOr<FrameMetadata> FirstMetadata(capture::RecordingReader& recording,
                                             const capture::CaptureEntry& entry);
 

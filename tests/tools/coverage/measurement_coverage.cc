@@ -1,8 +1,9 @@
 // How often the stated 95 % intervals cover the truth, over simulated recordings, each through
 // another w (tails of 0.1 % to 30 %): luminance at random pixels as it was seen and with the glare
 // taken out, g raw and smooth, the parameters of w, the luminance scale.
-// `measurement_coverage [RECORDINGS [without-w]]`, 200 unless given. A parameter of w counts where
-// the fit states an interval for it; how often it states none is in the last column.
+// `measurement_coverage [RECORDINGS [with-w|without-w [FIRST_SEED]]]`, 200 and seed 1000 unless
+// given. A parameter of w counts where the fit states an interval for it; how often it states none
+// is in the last column.
 // Tells on stderr how far it is. Exit 1 where a row lies further from 95 % than 2 % and chance (3
 // standard errors) allow.
 #include <cmath>
@@ -149,12 +150,12 @@ absl::Status Judge(const capture::SimParameters& rig, uint64_t seed, bool with_w
   return absl::OkStatus();
 }
 
-int Main(int recordings, bool with_w) {
+int Main(int recordings, bool with_w, uint64_t first_seed) {
   CoverageTable table;
   int rejected = 0;
   int failed = 0;
   for (int k = 0; k < recordings; ++k) {
-    const uint64_t seed = 1000 + static_cast<uint64_t>(k);
+    const uint64_t seed = first_seed + static_cast<uint64_t>(k);
     const absl::Status status = Judge(SmallRigOfAnyScatter(seed), seed, with_w, table, rejected);
     if ((k + 1) % 10 == 0) std::fprintf(stderr, "%d of %d recordings\n", k + 1, recordings);
     if (status.ok()) continue;
@@ -175,5 +176,6 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "measurement_coverage: give a number of recordings above 0\n");
     return 2;
   }
-  return eyebox::Main(recordings, argc <= 2 || std::string(argv[2]) != "without-w");
+  const uint64_t first_seed = argc > 3 ? std::strtoull(argv[3], nullptr, 10) : 1000;
+  return eyebox::Main(recordings, argc <= 2 || std::string(argv[2]) != "without-w", first_seed);
 }

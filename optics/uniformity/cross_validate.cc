@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "capture/base/status.h"
 #include "optics/uniformity/normal_equations.h"
+#include "optics/uniformity/order_weights.h"
 
 namespace eyebox::optics {
 namespace {
@@ -17,16 +18,20 @@ constexpr double kLeastCondition = 1e-13;
 constexpr int kIntervals[] = {1, 2, 3, 4, 6, 8, 12, 16};
 
 // Prediction of each class from the others, of the first `terms` functions; nullopt where they do
-// not determine it.
+// not determine it. Penalties: one for each of them, or none.
 std::optional<double> HeldOutChi2(const std::vector<NormalEquations>& folds,
-                                  const NormalEquations& all, Eigen::Index terms) {
+                                  const NormalEquations& all, Eigen::Index terms,
+                                  const std::vector<double>& penalties = {}) {
   double chi2 = 0;
   for (const NormalEquations& fold : folds) {
     NormalEquations rest = all;
     rest -= fold;
     if (rest.pixels < static_cast<size_t>(terms)) return std::nullopt;
     const auto n = static_cast<Eigen::Index>(rest.right_side.size());
-    const Eigen::Map<const Eigen::MatrixXd> matrix(rest.matrix.data(), n, n);
+    Eigen::Map<Eigen::MatrixXd> matrix(rest.matrix.data(), n, n);
+    for (size_t i = 0; i < penalties.size(); ++i) {
+      matrix.diagonal()(static_cast<Eigen::Index>(i)) += penalties[i];
+    }
     const Eigen::Map<const Eigen::VectorXd> right_side(rest.right_side.data(), n);
     const Eigen::LDLT<Eigen::MatrixXd> factors(matrix.topLeftCorner(terms, terms));
     if (factors.info() != Eigen::Success || !factors.isPositive() ||
@@ -45,16 +50,28 @@ NormalEquations SumOf(const std::vector<NormalEquations>& folds) {
   return all;
 }
 
+// Those of the first functions of the basis.
+NormalEquations FirstOf(const NormalEquations& all, size_t terms) {
+  NormalEquations first = all;
+  first.right_side.resize(terms);
+  first.matrix.resize(terms * terms);
+  for (size_t i = 0; i < terms; ++i) {
+    std::copy_n(all.matrix.begin() + i * all.right_side.size(), terms,
+                first.matrix.begin() + i * terms);
+  }
+  return first;
+}
+
 const CrossValidated& BestOf(const std::vector<CrossValidated>& models) {
   return *std::ranges::min_element(models, {}, &CrossValidated::held_out_chi2);
 }
 
-// All orders from one pass: the functions of a lower order come first.
-std::vector<CrossValidated> ValidatePolynomials(const MeasuredImage& image) {
+// All orders from one pass: the functions of a lower order come first. Then all of them, weighted.
+void ValidatePolynomials(const MeasuredImage& image, FieldChoice& choice) {
   const FieldBasis basis(FieldModel::kPolynomial, kLargestOrder, image.size());
   const auto folds = SumImage(image, basis, kFolds);
   const NormalEquations all = SumOf(folds);
-  std::vector<CrossValidated> models;
+  std::vector<CrossValidated>& models = choice.polynomials;
   for (int order = 0; order <= kLargestOrder; ++order) {
     const auto terms = static_cast<Eigen::Index>(
         FieldBasis(FieldModel::kPolynomial, order, image.size()).Terms().size());
@@ -62,7 +79,14 @@ std::vector<CrossValidated> ValidatePolynomials(const MeasuredImage& image) {
     if (!chi2) break;
     models.push_back({FieldModel::kPolynomial, order, *chi2});
   }
-  return models;
+  if (models.empty()) return;
+  choice.weighted = models.back();
+  if (choice.weighted.size < kLeastWeightedOrder) return;
+  const FieldBasis weighted(FieldModel::kPolynomial, choice.weighted.size, image.size());
+  const NormalEquations equations = FirstOf(all, weighted.Terms().size());
+  const auto chi2 = HeldOutChi2(folds, all, static_cast<Eigen::Index>(weighted.Terms().size()),
+                                OrderPenalties(equations, weighted));
+  if (chi2) choice.weighted.held_out_chi2 = *chi2;
 }
 
 std::vector<CrossValidated> ValidateSplines(const MeasuredImage& image) {
@@ -84,7 +108,7 @@ absl::StatusOr<FieldChoice> CrossValidate(const MeasuredImage& image) {
   const int longest = std::max(image.size().width_px, image.size().height_px);
   const MeasuredImage binned = Binned(image, (longest + kLongestSide - 1) / kLongestSide);
   FieldChoice choice;
-  choice.polynomials = ValidatePolynomials(binned);
+  ValidatePolynomials(binned, choice);
   if (choice.polynomials.empty()) {
     return Rejected("smooth field", "too few valid pixels for any model",
                     "record exposures with more valid pixels");
@@ -93,7 +117,7 @@ absl::StatusOr<FieldChoice> CrossValidate(const MeasuredImage& image) {
   choice.polynomial = BestOf(choice.polynomials);
   if (choice.splines.empty()) return choice;
   choice.spline = BestOf(choice.splines);
-  choice.spline_is_better = choice.spline.held_out_chi2 < choice.polynomial.held_out_chi2;
+  choice.spline_is_better = choice.spline.held_out_chi2 < choice.weighted.held_out_chi2;
   return choice;
 }
 

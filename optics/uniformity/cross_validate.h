@@ -23,7 +23,8 @@ struct FieldChoice {
   std::vector<CrossValidated> splines;      // 1, 2, 3, 4, 6, 8, 12, 16 intervals, likewise
   CrossValidated polynomial;                // the best of each
   CrossValidated spline;
-  bool spline_is_better = false;
+  CrossValidated weighted;  // the largest of the polynomials, its orders weighted (order_weights.h)
+  bool spline_is_better = false;  // than the weighted polynomial
 };
 
 // Five classes of pixels, spread evenly, are predicted from the other four. Works on blocks of

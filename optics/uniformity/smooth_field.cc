@@ -4,13 +4,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "capture/base/parallel.h"
 #include "capture/base/status.h"
 #include "optics/uniformity/normal_equations.h"
+#include "optics/uniformity/order_weights.h"
 
 namespace eyebox::optics {
 namespace {
@@ -78,6 +81,7 @@ std::vector<SideValues> Columns(const FieldBasis& basis, int width_px) {
 }
 
 constexpr size_t kMost = kMostFunctions;
+constexpr double kLeastCondition = 1e-13;
 
 // The field along one row is a sum over the functions in x alone, and so is its variance over pairs
 // of them: what each row costs besides a few products a pixel.
@@ -168,6 +172,81 @@ absl::Status CheckOrder(FieldModel model, int order) {
                   absl::StrCat("choose from ", least, " to ", most));
 }
 
+struct Problem {
+  FieldModel model;
+  int order;
+  FieldBasis basis;
+  NormalEquations equations;
+};
+
+absl::StatusOr<Problem> SumUp(const MeasuredImage& image, FieldModel model, int order) {
+  EYEBOX_RETURN_IF_ERROR(CheckOrder(model, order));
+  const FieldBasis basis(model, order, image.size());
+  Problem problem{model, order, basis, std::move(SumImage(image, basis, 1).front())};
+  const size_t n = basis.Terms().size();
+  if (problem.equations.pixels >= n) return problem;
+  return Rejected("smooth field",
+                  absl::StrCat(problem.equations.pixels, " valid pixels for ", n, " coefficients"),
+                  "record exposures with more valid pixels or lower the order");
+}
+
+struct Solution {
+  Eigen::VectorXd coefficients;
+  Eigen::MatrixXd inverse;  // of the normal equations with their penalties
+  double chi2 = 0;
+  double functions = 0;  // trace of what the pixels alone have in the solution
+};
+
+absl::StatusOr<Solution> Solve(const NormalEquations& equations,
+                               const std::vector<double>& penalties) {
+  const auto n = static_cast<Eigen::Index>(equations.right_side.size());
+  const Eigen::Map<const Eigen::MatrixXd> matrix(equations.matrix.data(), n, n);
+  Eigen::MatrixXd penalised = matrix;
+  for (size_t i = 0; i < penalties.size(); ++i) {
+    penalised.diagonal()(static_cast<Eigen::Index>(i)) += penalties[i];
+  }
+  // To ones on the diagonal, since penalties differ by many orders of magnitude.
+  const Eigen::VectorXd unit = penalised.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LDLT<Eigen::MatrixXd> factors(unit.asDiagonal() * penalised * unit.asDiagonal());
+  if (!unit.allFinite() || factors.info() != Eigen::Success || !factors.isPositive() ||
+      factors.rcond() < kLeastCondition) {
+    return Rejected("smooth field", "the valid pixels do not determine it",
+                    "lower the order, or record more of the field");
+  }
+  Solution solution;
+  solution.inverse = unit.asDiagonal() * factors.solve(Eigen::MatrixXd(unit.asDiagonal()));
+  const Eigen::Map<const Eigen::VectorXd> right_side(equations.right_side.data(), n);
+  solution.coefficients = unit.cwiseProduct(factors.solve(unit.cwiseProduct(right_side)));
+  solution.chi2 =
+      std::max(equations.Chi2({solution.coefficients.data(), equations.right_side.size()}), 0.0);
+  solution.functions =
+      penalties.empty() ? static_cast<double>(n) : solution.inverse.cwiseProduct(matrix).sum();
+  return solution;
+}
+
+// `excess`: what a larger model finds left out, over what noise leaves.
+SmoothField FieldOf(const MeasuredImage& image, const Problem& problem, const Solution& solution,
+                    double excess, const Image<float>& shared_sigma) {
+  SmoothField field;
+  field.size = image.size();
+  field.model = problem.model;
+  field.order = problem.order;
+  field.effective_functions = solution.functions;
+  field.coefficients.assign(solution.coefficients.begin(), solution.coefficients.end());
+  const double freedom = static_cast<double>(problem.equations.pixels) - solution.functions;
+  field.reduced_chi2 = freedom > 0 ? solution.chi2 / freedom : 0;
+  Eigen::MatrixXd covariance = solution.inverse * std::max({field.reduced_chi2, excess, 1.0});
+  if (!shared_sigma.empty()) {
+    const MeasuredImage shared{shared_sigma, image.variance, image.mask, image.unit, {}};
+    const NormalEquations with = std::move(SumImage(shared, problem.basis, 1).front());
+    const Eigen::VectorXd moved = solution.inverse * Eigen::Map<const Eigen::VectorXd>(
+                                                         with.right_side.data(), covariance.rows());
+    covariance += moved * moved.transpose();
+  }
+  field.covariance.assign(covariance.data(), covariance.data() + covariance.size());
+  return field;
+}
+
 }  // namespace
 
 double SmoothField::At(double x_px, double y_px) const {
@@ -185,43 +264,29 @@ Image<float> SmoothField::Values() const { return MapOf(*this, FillValues); }
 Image<float> SmoothField::Sigmas() const { return MapOf(*this, FillSigmas); }
 
 absl::StatusOr<SmoothField> FitSmoothField(const MeasuredImage& image, FieldModel model, int order,
-                                           const Image<float>& shared_sigma) {
-  EYEBOX_RETURN_IF_ERROR(CheckOrder(model, order));
-  const FieldBasis basis(model, order, image.size());
-  const NormalEquations equations = std::move(SumImage(image, basis, 1).front());
-  const size_t n = basis.Terms().size();
-  if (equations.pixels < n) {
-    return Rejected("smooth field",
-                    absl::StrCat(equations.pixels, " valid pixels for ", n, " coefficients"),
-                    "record exposures with more valid pixels or lower the order");
+                                           const Image<float>& shared_sigma,
+                                           std::optional<int> larger_order) {
+  EYEBOX_ASSIGN_OR_RETURN(const Problem problem, SumUp(image, model, order));
+  EYEBOX_ASSIGN_OR_RETURN(Solution solution, Solve(problem.equations, {}));
+  double excess = 1;
+  if (larger_order) {
+    EYEBOX_ASSIGN_OR_RETURN(const Problem larger, SumUp(image, model, *larger_order));
+    EYEBOX_ASSIGN_OR_RETURN(const Solution of_larger, Solve(larger.equations, {}));
+    excess = (solution.chi2 - of_larger.chi2) / (of_larger.functions - solution.functions);
   }
-  const auto count = static_cast<Eigen::Index>(n);
-  const Eigen::LDLT<Eigen::MatrixXd> factors(
-      Eigen::Map<const Eigen::MatrixXd>(equations.matrix.data(), count, count));
-  if (factors.info() != Eigen::Success || !factors.isPositive() || factors.rcond() < 1e-13) {
-    return Rejected("smooth field", "the valid pixels do not determine it",
-                    "lower the order, or record more of the field");
+  return FieldOf(image, problem, solution, excess, shared_sigma);
+}
+
+absl::StatusOr<SmoothField> FitWeightedPolynomial(const MeasuredImage& image, int largest_order,
+                                                  const Image<float>& shared_sigma) {
+  EYEBOX_ASSIGN_OR_RETURN(const Problem problem,
+                          SumUp(image, FieldModel::kPolynomial, largest_order));
+  EYEBOX_ASSIGN_OR_RETURN(Solution solution, Solve(problem.equations, {}));
+  if (largest_order >= kLeastWeightedOrder) {
+    EYEBOX_ASSIGN_OR_RETURN(
+        solution, Solve(problem.equations, OrderPenalties(problem.equations, problem.basis)));
   }
-  const Eigen::VectorXd solution =
-      factors.solve(Eigen::Map<const Eigen::VectorXd>(equations.right_side.data(), count));
-  Eigen::MatrixXd covariance = factors.solve(Eigen::MatrixXd::Identity(n, n));
-  SmoothField field;
-  field.size = image.size();
-  field.model = model;
-  field.order = order;
-  field.coefficients.assign(solution.begin(), solution.end());
-  const double chi2 = std::max(equations.Chi2(field.coefficients), 0.0);
-  field.reduced_chi2 = equations.pixels > n ? chi2 / static_cast<double>(equations.pixels - n) : 0;
-  covariance *= std::max(field.reduced_chi2, 1.0);
-  if (!shared_sigma.empty()) {
-    const MeasuredImage shared{shared_sigma, image.variance, image.mask};
-    const NormalEquations with = std::move(SumImage(shared, basis, 1).front());
-    const Eigen::VectorXd moved =
-        factors.solve(Eigen::Map<const Eigen::VectorXd>(with.right_side.data(), count));
-    covariance += moved * moved.transpose();
-  }
-  field.covariance.assign(covariance.data(), covariance.data() + covariance.size());
-  return field;
+  return FieldOf(image, problem, solution, 1, shared_sigma);
 }
 
 absl::StatusOr<SmoothField> NormaliseAt(const SmoothField& field, double x_px, double y_px) {

@@ -69,38 +69,52 @@ void RatioToReference(const LuminanceImage& luminance, const Disk& disk, const P
                                        disk.centre.y_px, "), radius ", disk.radius_px, " px)"));
 }
 
-// The size that predicts best balances what it cannot follow against noise, and its sigmas know of
-// the noise alone. So a model a little larger is taken, whose bias is small beside them: with these
-// steps the stated 95 % hold the truth 91 to 94 % of the time (tests/tools/README.md).
-constexpr size_t kOrdersAboveBest = 2;
-constexpr size_t kIntervalStepsAboveBest = 2;
+// The size that predicts best balances what it cannot follow against noise. So the next larger one
+// is taken, whose bias is small, and the one after that tells how much is still left out.
+constexpr size_t kIntervalStepsAboveBest = 1;
 
-int SizeAbove(const std::vector<CrossValidated>& tried, const CrossValidated& best, size_t steps) {
-  for (size_t i = 0; i < tried.size(); ++i) {
-    if (tried[i].size == best.size) return tried[std::min(i + steps, tried.size() - 1)].size;
-  }
-  return best.size;
+size_t PlaceOf(const std::vector<CrossValidated>& tried, int size) {
+  const auto at = std::ranges::find(tried, size, &CrossValidated::size);
+  return static_cast<size_t>(at - tried.begin());
 }
 
-// Both kinds of smooth model, of the size asked for, else a little above their best one; the kind
-// that predicts better first. With a size given, that kind is taken.
+absl::StatusOr<SmoothField> FitSpline(const LuminanceImage& full_field, const FieldChoice& choice,
+                                      std::optional<int> asked) {
+  int intervals = asked.value_or(0);
+  std::optional<int> larger;
+  if (!asked) {
+    const size_t last = choice.splines.size() - 1;
+    const size_t at =
+        std::min(PlaceOf(choice.splines, choice.spline.size) + kIntervalStepsAboveBest, last);
+    intervals = choice.splines[at].size;
+    if (at < last) larger = choice.splines[at + 1].size;
+  }
+  return FitSmoothField(full_field.image, FieldModel::kSpline, intervals, full_field.scatter_sigma,
+                        larger);
+}
+
+absl::StatusOr<SmoothField> FitPolynomial(const LuminanceImage& full_field,
+                                          const FieldChoice& choice, std::optional<int> asked) {
+  const Image<float>& scatter = full_field.scatter_sigma;
+  if (!asked) return FitWeightedPolynomial(full_field.image, choice.weighted.size, scatter);
+  return FitSmoothField(full_field.image, FieldModel::kPolynomial, *asked, scatter);
+}
+
+// Both kinds of smooth model; the kind that predicts better first. With a size given, that kind is
+// taken.
 absl::Status FitSmoothModels(const LuminanceImage& full_field, const UniformityOptions& options,
                              const PixelPoint& reference, UniformityMap& map) {
-  const MeasuredImage& luminance = full_field.image;
-  const Image<float>& scatter = full_field.scatter_sigma;
-  EYEBOX_ASSIGN_OR_RETURN(map.choice, CrossValidate(luminance));
-  const int order = options.polynomial_order.value_or(
-      SizeAbove(map.choice.polynomials, map.choice.polynomial, kOrdersAboveBest));
-  const int intervals = options.spline_intervals.value_or(
-      SizeAbove(map.choice.splines, map.choice.spline, kIntervalStepsAboveBest));
-  map.polynomial_order = order;
-  map.spline_intervals = intervals;
+  EYEBOX_ASSIGN_OR_RETURN(map.choice, CrossValidate(full_field.image));
   EYEBOX_ASSIGN_OR_RETURN(const SmoothField polynomial,
-                          FitSmoothField(luminance, FieldModel::kPolynomial, order, scatter));
+                          FitPolynomial(full_field, map.choice, options.polynomial_order));
+  map.polynomial_order = polynomial.order;
+  map.polynomial_weighted =
+      polynomial.effective_functions < static_cast<double>(polynomial.coefficients.size());
   EYEBOX_ASSIGN_OR_RETURN(map.smooth, NormaliseAt(polynomial, reference.x_px, reference.y_px));
   if (map.choice.splines.empty() && !options.spline_intervals) return absl::OkStatus();
   EYEBOX_ASSIGN_OR_RETURN(const SmoothField spline,
-                          FitSmoothField(luminance, FieldModel::kSpline, intervals, scatter));
+                          FitSpline(full_field, map.choice, options.spline_intervals));
+  map.spline_intervals = spline.order;
   EYEBOX_ASSIGN_OR_RETURN(map.alternative, NormaliseAt(spline, reference.x_px, reference.y_px));
   const bool asked_one =
       options.polynomial_order.has_value() != options.spline_intervals.has_value();

@@ -18,8 +18,9 @@ struct UniformityOptions {
   std::optional<PixelPoint> reference;      // image centre unless given
   double reference_radius_fraction = 0.02;  // of the smaller side of the image
   double patch_radius_fraction = 0.02;      // of the 9- and 13-point patches, likewise
-  // Of the smooth models; unless given, the second order and the next number of intervals above
-  // those that predict best (see cross_validate.h).
+  // Of the smooth models. Unless given, the polynomial has all orders that the pixels determine,
+  // weighted (order_weights.h), and the spline the next number of intervals above that which
+  // predicts best (cross_validate.h).
   std::optional<int> polynomial_order;
   std::optional<int> spline_intervals;
 };
@@ -49,8 +50,9 @@ struct UniformityMap {
   Image<float> scatter_sigma;  // of raw, see LuminanceImage, and part of its variance; may be empty
   FieldChoice choice;          // how the smooth models were chosen
   int polynomial_order = 0;    // of the smooth models that were fitted
-  int spline_intervals = 0;    // 0 where no spline is determined
-  SmoothField smooth;          // 1 at the reference point: the one that predicts better
+  bool polynomial_weighted = false;
+  int spline_intervals = 0;                // 0 where no spline is determined
+  SmoothField smooth;                      // 1 at the reference point: the one that predicts better
   std::optional<SmoothField> alternative;  // likewise, of the other kind, where it is determined
   AreaUniformity area;
   FieldRange raw_range;              // over valid pixels

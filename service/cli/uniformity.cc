@@ -23,18 +23,25 @@ struct Options {
   bool json = false;
 };
 
+const char* UnitOf(const v1::CrossValidatedModel& model) {
+  return model.model() == "spline" ? "intervals" : "orders";
+}
+
 void PrintDetail(const v1::UniformityDetail& detail) {
   for (const v1::CrossValidatedModel& model : detail.cross_validation()) {
-    const char* unit = model.model() == "spline" ? "intervals" : "orders";
     if (model.best()) {
       std::printf("  %s of %d %s predicts best of its kind: held-out chi-square %.4f a pixel\n",
-                  model.model().c_str(), model.size(), unit, model.held_out_chi_square());
+                  model.model().c_str(), model.size(), UnitOf(model), model.held_out_chi_square());
     }
     if (model.fitted()) {
-      std::printf("  %s of %d %s was fitted%s\n", model.model().c_str(), model.size(), unit,
-                  model.model() == detail.smooth_model() ? ", and taken" : "");
+      std::printf("  %s of %d %s was fitted%s: held-out chi-square %.4f a pixel\n",
+                  model.model().c_str(), model.size(), UnitOf(model),
+                  model.model() == detail.smooth_model() ? ", and taken" : "",
+                  model.held_out_chi_square());
     }
   }
+  std::printf("  the pixels determine %.1f functions of the model taken\n",
+              detail.effective_functions());
   const v1::LevelIndependence& levels = detail.level_independence();
   if (!levels.reason().empty()) {
     std::printf("  whether g is the same at all levels is not known: %s\n",

@@ -108,10 +108,14 @@ std::vector<double> AnglesDeg(int count, double principal_px, double focal_lengt
   return angles;
 }
 
-std::string NameOf(const optics::SmoothField& smooth) {
-  return smooth.model == optics::FieldModel::kSpline
-             ? absl::StrFormat("bicubic spline of %d intervals", smooth.order)
-             : absl::StrFormat("polynomial of order %d", smooth.order);
+std::string NameOfSmooth(const optics::UniformityMap& map) {
+  const optics::SmoothField& smooth = map.smooth;
+  if (smooth.model == optics::FieldModel::kSpline) {
+    return absl::StrFormat("bicubic spline of %d intervals", smooth.order);
+  }
+  if (!map.polynomial_weighted) return absl::StrFormat("polynomial of order %d", smooth.order);
+  return absl::StrFormat("polynomial of weighted orders to %d (%.3g effective functions)",
+                         smooth.order, smooth.effective_functions);
 }
 
 // The same of a calibrated camera, along the middle row and the middle column; empty where a pixel
@@ -142,7 +146,7 @@ report::MapFigure MapOf(const RunFindings& findings) {
   figure.caption = absl::StrFormat(
       "Luminance over that at the reference point, at drive %.4g. Lines: smooth model, a %s; "
       "raw g scatters about it by %s rms, of which noise explains %s.",
-      findings.result.uniformity().reference_drive(), NameOf(map.smooth),
+      findings.result.uniformity().reference_drive(), NameOfSmooth(map),
       report::Percent(map.residual_rms), report::Percent(map.residual_rms_expected));
   figure.quantity = "g";
   figure.unit = "1";

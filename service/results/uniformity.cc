@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "capture/base/status.h"
 #include "service/artifacts.h"
@@ -49,26 +50,41 @@ void AddFigures(const optics::UniformityMap& map, v1::UniformityResult& result) 
   AddParameter(parameters, "uniformity_area", map.area.uniformity, map.area.uniformity_sigma, "1");
 }
 
-const char* NameOf(optics::FieldModel model) {
-  return model == optics::FieldModel::kSpline ? "spline" : "polynomial";
+const char* NameOf(optics::FieldModel model, bool weighted) {
+  if (model == optics::FieldModel::kSpline) return "spline";
+  return weighted ? "weighted polynomial" : "polynomial";
 }
 
-void AddModels(const std::vector<optics::CrossValidated>& models, int best, int fitted,
-               v1::UniformityDetail& detail) {
+v1::CrossValidatedModel Describe(const optics::CrossValidated& model, bool weighted) {
+  v1::CrossValidatedModel line;
+  line.set_model(NameOf(model.model, weighted));
+  line.set_size(model.size);
+  line.set_held_out_chi_square(model.held_out_chi2);
+  return line;
+}
+
+void AddModels(const std::vector<optics::CrossValidated>& models, int best,
+               std::optional<int> fitted, v1::UniformityDetail& detail) {
   for (const optics::CrossValidated& model : models) {
     v1::CrossValidatedModel& line = *detail.add_cross_validation();
-    line.set_model(NameOf(model.model));
-    line.set_size(model.size);
-    line.set_held_out_chi_square(model.held_out_chi2);
+    line = Describe(model, false);
     line.set_best(model.size == best);
     line.set_fitted(model.size == fitted);
   }
 }
 
 void AddDetail(const optics::UniformityMap& map, v1::UniformityDetail& detail) {
-  AddModels(map.choice.polynomials, map.choice.polynomial.size, map.polynomial_order, detail);
+  std::optional<int> plain;
+  if (!map.polynomial_weighted) plain = map.polynomial_order;
+  AddModels(map.choice.polynomials, map.choice.polynomial.size, plain, detail);
+  if (map.polynomial_weighted) {
+    v1::CrossValidatedModel& weighted = *detail.add_cross_validation();
+    weighted = Describe(map.choice.weighted, true);
+    weighted.set_fitted(true);
+  }
   AddModels(map.choice.splines, map.choice.spline.size, map.spline_intervals, detail);
-  detail.set_smooth_model(NameOf(map.smooth.model));
+  detail.set_smooth_model(NameOf(map.smooth.model, map.polynomial_weighted));
+  detail.set_effective_functions(map.smooth.effective_functions);
   v1::FullFieldUniformity& field = *detail.mutable_full_field();
   field.set_minimum(map.area.g.minimum);
   field.set_minimum_sigma(map.area.minimum_sigma);

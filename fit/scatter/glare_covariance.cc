@@ -105,6 +105,16 @@ Matrix InstrumentCovariance(const GlareModel& model, const GlareCoordinates& opt
   return gain * known * gain.transpose();
 }
 
+// How far the optimum moves with the error that all readings share, 1 sigma of it.
+Eigen::VectorXd SharedMove(const GlareModel& model, const Matrix& half, const Matrix& jacobian) {
+  Eigen::VectorXd shared(jacobian.rows());
+  for (Eigen::Index i = 0; i < shared.size(); ++i) {
+    const GlareReading& reading = model.series().readings[static_cast<size_t>(i)];
+    shared(i) = reading.shared_sigma / reading.luminance_sigma;
+  }
+  return half * (half.transpose() * (jacobian.transpose() * shared));
+}
+
 }  // namespace
 
 GlareUncertainty MeasureUncertainty(const GlareModel& model, const GlareCoordinates& optimum,
@@ -121,7 +131,8 @@ GlareUncertainty MeasureUncertainty(const GlareModel& model, const GlareCoordina
 
   const Eigen::VectorXd inverse = svd.singularValues().cwiseMax(1 / kLargestSigma).cwiseInverse();
   const Matrix half = svd.matrixV().leftCols(inverse.size()) * inverse.asDiagonal();
-  Matrix covariance = scale * half * half.transpose();
+  const Eigen::VectorXd moved = SharedMove(model, half, jacobian);
+  Matrix covariance = scale * half * half.transpose() + moved * moved.transpose();
   if (model.options().instrument.has_value()) {
     covariance += InstrumentCovariance(model, optimum, half, jacobian);
   }

@@ -9,12 +9,12 @@
 namespace eyebox::fit {
 namespace {
 
-bool IsAngle(double value) { return value >= 0 && std::isfinite(value); }
+bool IsFiniteAndNotNegative(double value) { return value >= 0 && std::isfinite(value); }
 
 bool AreShares(const std::vector<OffsetShare>& offsets) {
   double sum = 0;
   for (const auto& [offset_deg, share] : offsets) {
-    if (!IsAngle(offset_deg) || !(share > 0)) return false;
+    if (!IsFiniteAndNotNegative(offset_deg) || !(share > 0)) return false;
     sum += share;
   }
   return offsets.empty() || std::abs(sum - 1) < 1e-9;
@@ -69,7 +69,8 @@ absl::Status GlareSeries::Validate() const {
   for (size_t i = 0; i < readings.size(); ++i) {
     const GlareReading& reading = readings[i];
     const std::string where = absl::StrCat(source, ", glare reading ", i + 1);
-    if (!IsAngle(reading.diameter_deg) || !IsAngle(reading.offset_deg)) {
+    if (!IsFiniteAndNotNegative(reading.diameter_deg) ||
+        !IsFiniteAndNotNegative(reading.offset_deg)) {
       return BadInput(where,
                       absl::StrCat("diameter ", reading.diameter_deg, " deg, offset ",
                                    reading.offset_deg, " deg"),
@@ -83,6 +84,10 @@ absl::Status GlareSeries::Validate() const {
     if (!std::isfinite(reading.luminance)) {
       return BadInput(where, absl::StrCat("luminance ", reading.luminance),
                       "give a finite luminance or leave the reading out");
+    }
+    if (!IsFiniteAndNotNegative(reading.shared_sigma)) {
+      return BadInput(where, absl::StrCat("shared sigma ", reading.shared_sigma),
+                      "give a standard uncertainty of at least 0");
     }
     if (!(reading.luminance_sigma > 0 && std::isfinite(reading.luminance_sigma))) {
       return BadInput(where, absl::StrCat("sigma ", reading.luminance_sigma),

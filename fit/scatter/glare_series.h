@@ -29,6 +29,8 @@ struct GlareReading {
   double luminance = 0;                   // unit of the series; of a camera, the mean of its pixels
   double luminance_sigma = 0;             // standard uncertainty, without the scale's
   std::vector<OffsetShare> offsets = {};  // of its pixels, shares sum to 1; empty: all as above
+  // Of an error that is the same number of these in all readings, beside luminance_sigma.
+  double shared_sigma = 0;
 };
 
 // A ring of the display around the disk's centre, from the ring before to `outer_radius_deg`. In

@@ -23,6 +23,7 @@ absl::StatusOr<GlareReading> ReadSpot(const optics::MeasuredImage& image,
                                       const optics::Calibration& calibration, const DiskAim& aim,
                                       double radius_px) {
   PixelReading spot(kSpotStepPx);
+  double flat_variance = 0, pixels = 0;
   const auto [width, height] = image.size();
   for (int y = 0; y < height; ++y) {
     const double down = y - aim.axis.y_px;
@@ -35,9 +36,15 @@ absl::StatusOr<GlareReading> ReadSpot(const optics::MeasuredImage& image,
       const double flat =
           optics::FlatVariance(value, calibration, static_cast<size_t>(y) * width + x);
       spot.Add(across, down, value, std::max(whole - flat, kLeastOwnShare * whole));
+      flat_variance += flat;
+      ++pixels;
     }
   }
-  if (!spot.empty()) return spot.Finish(aim.pitch_deg);
+  if (!spot.empty()) {
+    GlareReading reading = spot.Finish(aim.pitch_deg);
+    reading.shared_sigma = std::sqrt(flat_variance) / pixels;
+    return reading;
+  }
   return Rejected("spot on the axis", "it holds no valid pixel",
                   "record exposures that neither saturate nor vanish there, or widen the spot");
 }

@@ -20,7 +20,7 @@ struct DiskReadingOptions {
   double ring_guard_px = 3;  // away from the edge, where the core blurs it
   // What the model leaves out (g between its rings, light beside the image), relative to each
   // reading.
-  double model_relative_sigma = 0.0005;
+  double model_relative_sigma = 0.0001;
 
   // Errors: InvalidArgument naming the option.
   absl::Status Validate() const;
@@ -33,8 +33,8 @@ struct DiskAim {
 };
 
 // The middle of the disk; of a bright one with a diameter above 0 also the rings that fit into the
-// image. The flat's error is common to what the spot sees in every image, so that it belongs to the
-// scale there; in rings it counts.
+// image. The flat's error in the middle is the same in every image: one error that they share; in
+// rings it counts as noise.
 // Errors: InvalidArgument (options, pitch), FailedPrecondition (no valid pixel in the middle).
 absl::StatusOr<std::vector<GlareReading>> ReadDisk(const optics::MeasuredImage& image,
                                                    const optics::Calibration& calibration,

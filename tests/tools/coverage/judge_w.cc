@@ -93,9 +93,7 @@ void JudgeW(const fit::ScatterFit& fit, const capture::SimParameters& rig, Cover
 absl::Status JudgeCleanLuminance(const fit::FieldFit& w, const capture::SimParameters& rig,
                                  uint64_t seed, SimulatedMeasurement& measurement,
                                  const std::vector<Sample>& pixels, CoverageTable& table) {
-  capture::SimParameters clean_rig = rig;
-  clean_rig.scatter.tail_weight = 0;  // the core is kept
-  const SimulatedMeasurement clean(clean_rig, seed);
+  const SimulatedMeasurement clean(WithoutTail(rig), seed);
   const auto judge = [&](const std::string& name, const Stimulus& stimulus,
                          const optics::LuminanceImage& image,
                          const std::vector<Sample>& where) -> absl::Status {

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "capture/base/random.h"
-#include "capture/camera/sim/display.h"
 #include "optics/reduce/flat_variance.h"
 #include "optics/uniformity/level_independence.h"
 #include "optics/uniformity/uniformity_map.h"
@@ -119,8 +118,10 @@ absl::Status JudgeScatter(SimulatedMeasurement& measurement, const capture::SimP
   JudgeW(w->fit, rig, table);
   const auto clean = optics::MeasureUniformity(w->removal.luminance);
   if (!clean.ok()) return clean.status();
-  JudgeG("g, scatter taken out", *clean,
-         capture::Nonuniformity(rig.nonuniformity, white.image.size()), pixels, table);
+  const auto truth = SimulatedMeasurement(WithoutTail(rig), seed)
+                         .LuminanceOf(Show(StimulusPattern::kFullField, 0, 1));
+  if (!truth.ok()) return truth.status();
+  JudgeG("g, scatter taken out", *clean, *truth, pixels, table);
   return JudgeCleanLuminance(*w, rig, seed, measurement, pixels, table);
 }
 

@@ -38,6 +38,12 @@ inline capture::SimParameters SmallRigOfAnyScatter(uint64_t seed) {
   return parameters;
 }
 
+// What is left of a rig when its scattered light is taken out: the core is kept.
+inline capture::SimParameters WithoutTail(capture::SimParameters parameters) {
+  parameters.scatter.tail_weight = 0;
+  return parameters;
+}
+
 }  // namespace eyebox
 
 #endif  // EYEBOX_TESTS_TOOLS_COVERAGE_SMALL_RIG_H_

@@ -54,9 +54,23 @@ double SigmaOfRatio(const PatchMean& numerator, const PatchMean& denominator) {
   return std::sqrt(noise + scatter * scatter) / denominator.value;
 }
 
+PatchRatio RatioOf(const MeasuredImage& image, const PatchMean& patch, const PatchMean& reference) {
+  const double ratio = patch.value / reference.value;
+  double common = 0;  // covariance of the two means
+  VisitDisk(image.mask, patch.x_px, patch.y_px, patch.radius_px, [&](int x, int y) {
+    if (std::hypot(x - reference.x_px, y - reference.y_px) > reference.radius_px) return;
+    common += image.variance.at(x, y);
+  });
+  common /= static_cast<double>(patch.pixels) * static_cast<double>(reference.pixels);
+  const double noise = patch.NoiseVariance() + ratio * ratio * reference.NoiseVariance();
+  const double scatter = patch.scatter_sigma - ratio * reference.scatter_sigma;
+  const double variance = std::max(noise - 2 * ratio * common, 0.0) + scatter * scatter;
+  return {patch.x_px, patch.y_px, ratio, std::sqrt(variance) / reference.value};
+}
+
 absl::StatusOr<PatchMean> MeanOverDisk(const MeasuredImage& image, double x_px, double y_px,
                                        double radius_px) {
-  PatchMean patch{x_px, y_px};
+  PatchMean patch{x_px, y_px, radius_px};
   double variance = 0;
   patch.pixels = VisitDisk(image.mask, x_px, y_px, radius_px, [&](int x, int y) {
     patch.value += image.value.at(x, y);

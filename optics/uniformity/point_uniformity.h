@@ -17,6 +17,7 @@ namespace eyebox::optics {
 struct PatchMean {
   double x_px = 0;
   double y_px = 0;
+  double radius_px = 0;
   double value = 0;
   double sigma = 0;          // with that of the scattered light
   double scatter_sigma = 0;  // of the scattered light alone, see LuminanceImage
@@ -35,6 +36,18 @@ struct PointUniformity {
 // Standard uncertainty of numerator / denominator, of which scattered light's error is the same
 // number in both.
 double SigmaOfRatio(const PatchMean& numerator, const PatchMean& denominator);
+
+// g at a patch.
+struct PatchRatio {
+  double x_px = 0;
+  double y_px = 0;
+  double value = 0;
+  double sigma = 0;  // standard uncertainty
+};
+
+// Patch over reference, both means over disks of this image, which may have pixels in common. The
+// reference is above 0.
+PatchRatio RatioOf(const MeasuredImage& image, const PatchMean& patch, const PatchMean& reference);
 
 // Errors: FailedPrecondition (no valid pixel in the disk).
 absl::StatusOr<PatchMean> MeanOverDisk(const MeasuredImage& image, double x_px, double y_px,

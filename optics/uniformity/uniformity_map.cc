@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "capture/base/status.h"
@@ -183,6 +184,15 @@ void CompareRawAndSmooth(UniformityMap& map) {
   map.residual_rms_expected = std::sqrt(expected / static_cast<double>(pixels));
 }
 
+std::vector<PatchRatio> RatiosOf(const MeasuredImage& luminance, const PointUniformity& points,
+                                 const PatchMean& reference) {
+  std::vector<PatchRatio> ratios;
+  for (const PatchMean& patch : points.patches) {
+    ratios.push_back(RatioOf(luminance, patch, reference));
+  }
+  return ratios;
+}
+
 }  // namespace
 
 absl::StatusOr<UniformityMap> MeasureUniformity(const LuminanceImage& full_field,
@@ -213,6 +223,8 @@ absl::StatusOr<UniformityMap> MeasureUniformity(const LuminanceImage& full_field
                           MeasurePointUniformity(full_field, PointPattern::kNine, patch_px));
   EYEBOX_ASSIGN_OR_RETURN(map.thirteen_points,
                           MeasurePointUniformity(full_field, PointPattern::kThirteen, patch_px));
+  map.g_of_nine_points = RatiosOf(luminance, map.nine_points, reference);
+  map.g_of_thirteen_points = RatiosOf(luminance, map.thirteen_points, reference);
   return map;
 }
 

@@ -4,6 +4,7 @@
 #define EYEBOX_OPTICS_UNIFORMITY_UNIFORMITY_MAP_H_
 
 #include <optional>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "optics/geometry/pixel_point.h"
@@ -61,6 +62,8 @@ struct UniformityMap {
   double residual_rms_expected = 0;  // what the noise of raw alone would leave
   PointUniformity nine_points;
   PointUniformity thirteen_points;
+  std::vector<PatchRatio> g_of_nine_points;      // 1 at the reference disk; in the patches' order
+  std::vector<PatchRatio> g_of_thirteen_points;  // likewise
 };
 
 // Errors: InvalidArgument (reference outside the image; order or intervals out of range),

@@ -21,7 +21,7 @@ double FieldAngleDeg(double offset_px, const capture::PinholeGeometry& geometry)
   return std::atan(offset_px / geometry.focal_length_px) * 180 / std::numbers::pi;
 }
 
-v1::UniformityPoint Describe(const optics::PatchMean& patch,
+v1::UniformityPoint Describe(const optics::PatchRatio& patch,
                              const std::optional<capture::PinholeGeometry>& geometry) {
   v1::UniformityPoint point;
   point.set_x_px(patch.x_px);
@@ -138,10 +138,10 @@ absl::StatusOr<v1::UniformityResult> DescribeUniformity(
   reference.set_sigma(std::hypot(map.reference_luminance_sigma,
                                  map.reference_luminance * full_field.scale_relative_sigma));
   reference.set_unit(full_field.image.unit);
-  for (const auto& patch : map.nine_points.patches) {
+  for (const optics::PatchRatio& patch : map.g_of_nine_points) {
     *result.add_points_9() = Describe(patch, geometry);
   }
-  for (const auto& patch : map.thirteen_points.patches) {
+  for (const optics::PatchRatio& patch : map.g_of_thirteen_points) {
     *result.add_points_13() = Describe(patch, geometry);
   }
   result.set_smooth_order(map.smooth.order);

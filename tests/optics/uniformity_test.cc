@@ -105,6 +105,29 @@ TEST(UniformityTest, NineAndThirteenPointsByHand) {
   EXPECT_NEAR(map.nine_points.nonuniformity, 1 - expected, 0.002);
 }
 
+TEST(UniformityTest, PointsTellGWithWhatTheyShareWithTheReference) {
+  double squares = 0, near_squares = 0;
+  constexpr int kTrials = 150;
+  for (int seed = 1; seed <= kTrials; ++seed) {
+    const auto map = *MeasureUniformity(FullField(100, 0.01, seed));
+    ASSERT_EQ(map.g_of_nine_points.size(), 9U);
+    ASSERT_EQ(map.g_of_thirteen_points.size(), 13U);
+    const PatchRatio& centre = map.g_of_nine_points[4];
+    EXPECT_EQ(centre.value, 1) << "it is the reference itself";
+    EXPECT_NEAR(centre.sigma, 0, 1e-9);
+    const PatchRatio& corner = map.g_of_nine_points[0];
+    EXPECT_EQ(corner.x_px, 16);
+    squares += std::pow((corner.value - TrueG(16, 12)) / corner.sigma, 2);
+    // Half of this patch's pixels are the reference's.
+    const MeasuredImage& image = FullField(100, 0.01, seed).image;
+    const PatchMean reference = *MeanOverDisk(image, 80, 60, 2.42);
+    const PatchRatio near = RatioOf(image, *MeanOverDisk(image, 82, 60, 2.42), reference);
+    near_squares += std::pow((near.value - TrueG(82, 60)) / near.sigma, 2);
+  }
+  EXPECT_NEAR(std::sqrt(squares / kTrials), 1, 4 / std::sqrt(2.0 * kTrials));
+  EXPECT_NEAR(std::sqrt(near_squares / kTrials), 1, 4 / std::sqrt(2.0 * kTrials));
+}
+
 TEST(UniformityTest, SigmaOfPointUniformityMatchesItsScatter) {
   double sum = 0;
   double squares = 0;

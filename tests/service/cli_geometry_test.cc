@@ -80,6 +80,10 @@ TEST(CliGeometry, ViewsOfDotsGiveFieldAnglesToAMap) {
   const auto map = ParsedFrom<v1::UniformityResult>(
       RunEyebox("uniformity " + RecordedRig().string() + " --geometry " + file + " --out " +
                 (folder / "maps").string() + " --json"));
+  ASSERT_EQ(map.points_9_size(), 9);
+  ASSERT_EQ(map.points_13_size(), 13);
+  EXPECT_NEAR(map.points_9(4).g(), 1, 1e-9);
+  EXPECT_NEAR(map.points_13(0).g(), 0.86, 0.02);  // of the rig, at 80 % to the upper left corner
   for (const v1::UniformityPoint& point : map.points_9()) {
     EXPECT_NEAR(point.x_deg(), std::atan((point.x_px() - 79.5) / 219.8) * 180 / std::numbers::pi,
                 0.3);

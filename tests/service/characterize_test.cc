@@ -134,7 +134,8 @@ TEST_F(CharacterizeTest, ReducingWithTheSensorTakesGainAndDefectsFromIt) {
       RunEyebox("reduce " + std::string(kFixture) + " --sensor " + out + " --json"));
   EXPECT_THAT(reduced.noise_source(), HasSubstr("EMVA 1288"));
   for (const v1::Parameter& parameter : reduced.parameters()) {
-    if (parameter.name() == "system_gain") EXPECT_EQ(parameter.value(), Value(sensor, "K"));
+    if (parameter.name() != "system_gain") continue;
+    EXPECT_EQ(parameter.value(), Value(sensor, "K"));
   }
   const auto estimated =
       ParsedFrom<v1::ReduceResult>(RunEyebox("reduce " + std::string(kFixture) + " --json"));

@@ -60,7 +60,10 @@ class Contrast : public testing::Test {
 
   static v1::ContrastResult Measured(const std::filesystem::path& recording,
                                      const std::filesystem::path& scatter) {
-    const auto result = MeasureContrast({.recording = recording, .scatter = scatter}, {});
+    ContrastRequest request;
+    request.recording = recording;
+    request.scatter = scatter;
+    const auto result = MeasureContrast(request, {});
     EXPECT_TRUE(result.ok()) << result.status();
     return result.value_or(v1::ContrastResult());
   }
@@ -123,7 +126,9 @@ TEST_F(Contrast, ADisplayThatFadesMeanwhileIsCorrectedForIt) {
 }
 
 TEST_F(Contrast, ARecordingWithoutItIsToldWhatToRecord) {
-  const auto result = MeasureContrast({.recording = Record("levels", 0.02, {.levels = 2})}, {});
+  ContrastRequest request;
+  request.recording = Record("levels", 0.02, {.levels = 2});
+  const auto result = MeasureContrast(request, {});
   EXPECT_TRUE(absl::IsFailedPrecondition(result.status())) << result.status();
   EXPECT_THAT(std::string(result.status().message()),
               AllOf(HasSubstr("levels"), HasSubstr("--checkerboards")));

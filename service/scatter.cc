@@ -112,8 +112,7 @@ void WarnOfMisfit(const fit::ScatterFit& fit, v1::ScatterResult& result) {
   if (reduced <= kNotedMisfit) return;
   result.add_warnings(absl::StrFormat(
       "w does not follow the readings (reduced chi-square %.3g): its sigmas were widened, yet what "
-      "is taken out of other scenes may be off by more; try another --tail, --pedestal or a "
-      "smaller "
+      "is taken out of other scenes may be off by more; try another --tail, --pedestal or "
       "--reach-deg",
       reduced));
 }

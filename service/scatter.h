@@ -16,6 +16,8 @@
 namespace eyebox::service {
 
 struct ScatterRequest {
+  ScatterRequest() { fit.find_reach = true; }
+
   // Each the folder of a recording, or a CSV of readings (see fit/scatter/glare_csv.h).
   std::filesystem::path source;
   std::optional<std::string> series;

@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "capture/base/status.h"
+#include "fit/scatter/find_reach.h"
 #include "fit/scatter/glare_covariance.h"
 #include "fit/scatter/glare_model.h"
 
@@ -12,27 +13,10 @@ namespace eyebox::fit {
 namespace {
 
 constexpr size_t kStarts = 5;
-constexpr double kChance = 3;  // standard deviations of chi-square that count as chance
 
 std::string UnitOf(int parameter, const GlareSeries& series) {
   if (parameter == kCoreRadius || parameter == kTailRadius) return "deg";
   return parameter == kBright || parameter == kBackground ? series.luminance_unit : "1";
-}
-
-// Factor on the covariance: what the residuals show beyond the stated sigmas.
-double ExcessScatter(double chi_square, int degrees_of_freedom) {
-  if (degrees_of_freedom <= 0) return 1;
-  const double expected = degrees_of_freedom;
-  const bool chance = chi_square <= expected + kChance * std::sqrt(2 * expected);
-  return chance ? 1 : chi_square / expected;
-}
-
-double GlareRelativeSigma(const ScatterFit& fit) {
-  const double share = fit.kernel.tail_share + fit.kernel.pedestal_share;
-  const auto at = [&](int i, int j) { return fit.covariance[i * kGlareParameters + j]; };
-  const double variance = at(kTailShare, kTailShare) + at(kPedestalShare, kPedestalShare) +
-                          2 * at(kTailShare, kPedestalShare);
-  return share > 0 ? std::sqrt(std::max(variance, 0.0)) / share : 0;
 }
 
 std::vector<FittedGlareReading> Compare(const GlareSeries& series,
@@ -83,12 +67,30 @@ absl::StatusOr<ScatterFit> Fit(const GlareSeries& series, const ScatterFitOption
   fit.open = std::move(uncertainty.open);
   fit.identifiability = std::move(uncertainty.identifiability);
   for (int i = 0; i < kGlareParameters; ++i) {
-    const double variance = fit.covariance[i * (kGlareParameters + 1)];
-    fit.parameters[i] = {kGlareNames[i], values[i], std::sqrt(std::max(variance, 0.0)),
-                         UnitOf(i, series)};
+    fit.parameters[i] = {kGlareNames[i], values[i], 0, UnitOf(i, series)};
   }
-  fit.glare_relative_sigma = GlareRelativeSigma(fit);
+  StateSigmas(fit);
   return fit;
+}
+
+FitAtReach FitsOf(const GlareSeries& series, const ScatterFitOptions& options) {
+  return [&series, &options](double reach_deg, const ScatterFit& start) {
+    ScatterFitOptions held = options;
+    held.reach_deg = reach_deg;
+    return Fit(series, held, &start);
+  };
+}
+
+// Through an instrument each fit takes long, and the far light is its own and the headset's.
+bool MayFindReach(const ScatterFitOptions& options) {
+  return options.find_reach && !options.instrument.has_value();
+}
+
+absl::StatusOr<ScatterFit> WithReach(ScatterFit fit, const GlareSeries& series,
+                                     const ScatterFitOptions& options) {
+  const bool contradicted = ExcessScatter(fit.chi_square, fit.degrees_of_freedom) > 1;
+  if (!contradicted || !MayFindReach(options)) return fit;
+  return FindReach(fit, FitsOf(series, options));
 }
 
 }  // namespace
@@ -121,12 +123,17 @@ KnownScatter ScatterFit::AsInstrument() const {
 }
 
 absl::StatusOr<ScatterFit> FitScatter(const GlareSeries& series, const ScatterFitOptions& options) {
-  return Fit(series, options, nullptr);
+  EYEBOX_ASSIGN_OR_RETURN(ScatterFit fit, Fit(series, options, nullptr));
+  return WithReach(std::move(fit), series, options);
 }
 
 absl::StatusOr<ScatterFit> FitScatterFrom(const ScatterFit& start, const GlareSeries& series,
                                           const ScatterFitOptions& options) {
-  return Fit(series, options, &start);
+  if (start.reach_sigma_deg > 0 && MayFindReach(options)) {
+    return RefineReach(start, FitsOf(series, options));
+  }
+  EYEBOX_ASSIGN_OR_RETURN(ScatterFit fit, Fit(series, options, &start));
+  return WithReach(std::move(fit), series, options);
 }
 
 }  // namespace eyebox::fit

@@ -27,7 +27,10 @@ struct KnownScatter {
 struct ScatterFitOptions {
   optics::CoreShape core = optics::CoreShape::kGaussian;
   optics::TailShape tail = optics::TailShape::kMoffat;
-  double reach_deg = 60;  // held: no reading within the field tells of it
+  double reach_deg = 60;
+  // Where the readings contradict that reach, a shorter one that they bear out is taken; through an
+  // instrument it is held all the same.
+  bool find_reach = false;
   bool pedestal = false;  // fitted, else held at 0
   // Held where given; luminances in the unit of the series.
   std::optional<double> core_radius_deg;
@@ -68,6 +71,7 @@ struct ScatterFit {
   // [7, 7] row-major, that of the parameters. From the stated sigmas; scaled by the reduced
   // chi-square where that is larger than chance allows (3 standard deviations).
   std::array<double, kGlareParameters * kGlareParameters> covariance{};
+  double reach_sigma_deg = 0;  // of the kernel's reach, 0 where it is held
   // Of the energy in tail and pedestal, for optics::CorrectionOptions.
   double glare_relative_sigma = 0;
   std::vector<FittedGlareReading> readings;

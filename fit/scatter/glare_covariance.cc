@@ -16,6 +16,7 @@ constexpr double kOpen = 0.5;          // in logarithms: not even known to a fac
 constexpr double kLargestSigma = 1e6;  // keeps covariances finite
 constexpr double kNamed = 0.2;         // components of a direction below this are not worth a word
 constexpr double kInstrumentStep = 1e-3;
+constexpr double kChance = 3;  // standard deviations of chi-square that count as chance
 
 using Matrix = Eigen::MatrixXd;
 
@@ -152,6 +153,33 @@ GlareUncertainty MeasureUncertainty(const GlareModel& model, const GlareCoordina
     }
   }
   return result;
+}
+
+double ExcessScatter(double chi_square, int degrees_of_freedom) {
+  if (degrees_of_freedom <= 0) return 1;
+  const double expected = degrees_of_freedom;
+  const bool chance = chi_square <= expected + kChance * std::sqrt(2 * expected);
+  return chance ? 1 : chi_square / expected;
+}
+
+void StateSigmas(ScatterFit& fit) {
+  const auto at = [&](int i, int j) { return fit.covariance[i * kGlareParameters + j]; };
+  for (int i = 0; i < kGlareParameters; ++i) {
+    fit.parameters[i].sigma = std::sqrt(std::max(at(i, i), 0.0));
+  }
+  const double share = fit.kernel.tail_share + fit.kernel.pedestal_share;
+  const double variance = at(kTailShare, kTailShare) + at(kPedestalShare, kPedestalShare) +
+                          2 * at(kTailShare, kPedestalShare);
+  fit.glare_relative_sigma = share > 0 ? std::sqrt(std::max(variance, 0.0)) / share : 0;
+}
+
+void AddToCovariance(const std::array<double, kGlareParameters>& moved, ScatterFit& fit) {
+  for (int i = 0; i < kGlareParameters; ++i) {
+    for (int j = 0; j < kGlareParameters; ++j) {
+      fit.covariance[i * kGlareParameters + j] += moved[i] * moved[j];
+    }
+  }
+  StateSigmas(fit);
 }
 
 }  // namespace eyebox::fit

@@ -23,6 +23,16 @@ struct GlareUncertainty {
 GlareUncertainty MeasureUncertainty(const GlareModel& model, const GlareCoordinates& optimum,
                                     double scale);
 
+// Factor on the covariance: what the residuals show beyond the stated sigmas, 1 where chance (3
+// standard deviations of chi-square) explains it.
+double ExcessScatter(double chi_square, int degrees_of_freedom);
+
+// Takes the sigmas of the parameters and of the glare from the covariance.
+void StateSigmas(ScatterFit& fit);
+
+// An error that moves all parameters together by this at 1 standard deviation.
+void AddToCovariance(const std::array<double, kGlareParameters>& moved, ScatterFit& fit);
+
 }  // namespace eyebox::fit
 
 #endif  // EYEBOX_FIT_SCATTER_GLARE_COVARIANCE_H_

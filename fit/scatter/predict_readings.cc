@@ -78,7 +78,9 @@ absl::StatusOr<std::vector<PredictedReading>> PredictReadings(
     patches.readings.push_back({GlarePattern::kBrightDisk, shown, 0, 1, 1});
   }
   patches.readings.push_back({GlarePattern::kBrightDisk, 2 * field_radius_deg, 0, 1, 1});
-  const GlareModel model(patches, options);
+  ScatterFitOptions of_fit = options;
+  of_fit.reach_deg = fit.kernel.reach_deg;
+  const GlareModel model(patches, of_fit);
   const GlareValues values = ValuesOf(fit);
   const std::vector<Figures> figures = FiguresAt(model, values);
   const auto derivatives = DerivativesAt(model, values, figures);

@@ -55,8 +55,12 @@ void BindModel(CLI::App& command, ScatterRequest& request) {
   command.add_option("--core", request.fit.core, "gaussian, or disk for a pupil or a target")
       ->transform(OneOf(kCores));
   command.add_option("--tail", request.fit.tail, "moffat or power_law")->transform(OneOf(kTails));
-  command.add_option("--reach-deg", request.fit.reach_deg, "Beyond it w is 0")
-      ->capture_default_str();
+  command
+      .add_option(
+          "--reach-deg", request.fit.reach_deg,
+          "Beyond it w is 0. Unless given, a shorter one is taken where the readings say so")
+      ->capture_default_str()
+      ->each([&request](const std::string&) { request.fit.find_reach = false; });
   command.add_flag("--pedestal", request.fit.pedestal, "Fit an even pedestal too");
   command.add_option("--core-radius-deg", request.fit.core_radius_deg, "Hold the core's radius");
   command.add_option("--tail-radius-deg", request.fit.tail_radius_deg, "Hold the tail's radius");

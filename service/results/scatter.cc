@@ -98,6 +98,8 @@ v1::ScatterResult DescribeScatter(const ScatterFindings& findings) {
     AddParameter(*result.mutable_parameters(), parameter.name, parameter.value, parameter.sigma,
                  parameter.unit);
   }
+  AddParameter(*result.mutable_parameters(), "reach_deg", fit.kernel.reach_deg, fit.reach_sigma_deg,
+               "deg");
   *result.mutable_kernel() = ToProto(fit.AsInstrument(), fit.glare_relative_sigma);
   result.set_kernel_of(findings.instrument ? "headset" : "headset_and_instrument");
   if (findings.instrument) {

@@ -147,15 +147,20 @@ absl::StatusOr<double> CorrectForDrift(capture::RecordingReader& recording,
   return drift.SigmaAt(time_s) / drift.FactorAt(time_s);
 }
 
+absl::StatusOr<bool> IsBeyondDrift(capture::RecordingReader& recording,
+                                   const std::vector<const capture::CaptureEntry*>& captures,
+                                   const optics::Drift& drift) {
+  if (drift.order == 0) return false;
+  EYEBOX_ASSIGN_OR_RETURN(const double time_s, TimeOf(recording, captures));
+  return time_s < drift.first_s - kBeyond * drift.half_span_s ||
+         time_s > drift.first_s + (2 + kBeyond) * drift.half_span_s;
+}
+
 absl::StatusOr<std::optional<double>> CorrectForDriftWithin(
     capture::RecordingReader& recording, const std::vector<const capture::CaptureEntry*>& captures,
     const optics::Drift& drift, optics::LuminanceImage& luminance) {
-  if (drift.order == 0) return 0.0;
-  EYEBOX_ASSIGN_OR_RETURN(const double time_s, TimeOf(recording, captures));
-  if (time_s < drift.first_s - kBeyond * drift.half_span_s ||
-      time_s > drift.first_s + (2 + kBeyond) * drift.half_span_s) {
-    return std::nullopt;
-  }
+  EYEBOX_ASSIGN_OR_RETURN(const bool beyond, IsBeyondDrift(recording, captures, drift));
+  if (beyond) return std::nullopt;
   return CorrectForDrift(recording, captures, drift, luminance);
 }
 

@@ -33,7 +33,14 @@ absl::StatusOr<std::optional<double>> CorrectForDriftWithin(
     capture::RecordingReader& recording, const std::vector<const capture::CaptureEntry*>& captures,
     const optics::Drift& drift, optics::LuminanceImage& luminance);
 
-// The same, however far beyond: of levels, which have references before and after them.
+// Whether they were taken beyond the readings of the drift by more than a tenth of their span.
+// Errors: those of reading.
+absl::StatusOr<bool> IsBeyondDrift(capture::RecordingReader& recording,
+                                   const std::vector<const capture::CaptureEntry*>& captures,
+                                   const optics::Drift& drift);
+
+// The same, however far beyond: of levels, which have references before and after them. Further
+// out the uncertainty grows with that of the drift's polynomial.
 absl::StatusOr<double> CorrectForDrift(capture::RecordingReader& recording,
                                        const std::vector<const capture::CaptureEntry*>& captures,
                                        const optics::Drift& drift,

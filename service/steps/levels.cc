@@ -131,6 +131,7 @@ absl::StatusOr<MeasuredLevels> ReduceGreyLevels(capture::RecordingReader& record
   EYEBOX_ASSIGN_OR_RETURN(const MeasuredDrift drift, MeasureDrift(recording));
   MeasuredLevels levels;
   std::vector<DiskReading> readings;
+  int beyond = 0;                   // the readings of the drift
   double scale_relative_sigma = 0;  // without that of the drift, which differs between levels
   for (size_t i = 0; i < groups.size(); ++i) {
     EYEBOX_RETURN_IF_ERROR(
@@ -148,6 +149,9 @@ absl::StatusOr<MeasuredLevels> ReduceGreyLevels(capture::RecordingReader& record
     EYEBOX_ASSIGN_OR_RETURN(
         const double drift_sigma,
         CorrectForDrift(recording, groups[i].captures, drift.drift, reduced->luminance));
+    EYEBOX_ASSIGN_OR_RETURN(const bool is_beyond,
+                            IsBeyondDrift(recording, groups[i].captures, drift.drift));
+    beyond += is_beyond ? 1 : 0;
     readings.push_back(ReadReferenceDisk(reduced->luminance, calibration, drive));
     readings.back().relative_sigma = drift_sigma;
     levels.shares.push_back({reduced->report.budget, drift_sigma});
@@ -158,6 +162,13 @@ absl::StatusOr<MeasuredLevels> ReduceGreyLevels(capture::RecordingReader& record
     levels.reference = {drive, *std::move(reduced), figures};
   }
   if (readings.empty()) return NoUsableLevel(levels.warnings);
+  if (beyond > 0) {
+    levels.warnings.push_back(absl::StrFormat(
+        "%d of %d levels were shown beyond the readings of the drift, which is extrapolated to "
+        "them "
+        "and uncertain there; show the reference patch before the first and after the last level",
+        beyond, groups.size()));
+  }
   levels.warnings.insert(levels.warnings.begin(), drift.warnings.begin(), drift.warnings.end());
   const optics::LuminanceImage& brightest = levels.reference.reduced.luminance;
   EYEBOX_ASSIGN_OR_RETURN(levels.series,

@@ -37,6 +37,16 @@ class DriftStep : public testing::Test {
   std::unique_ptr<capture::RecordingReader> Record(const std::string& name, double lost_per_s,
                                                    int reference_every = 2,
                                                    const capture::LightAt& photodiode = {}) {
+    capture::PlanOptions options;
+    options.levels = 9;
+    options.dark_repeats = options.flat_repeats = 4;
+    options.reference_every = reference_every;
+    return Record(name, lost_per_s, *capture::MakeGreyPlan(options), photodiode);
+  }
+
+  std::unique_ptr<capture::RecordingReader> Record(const std::string& name, double lost_per_s,
+                                                   const capture::CapturePlan& plan,
+                                                   const capture::LightAt& photodiode = {}) {
     ManualClock clock;
     capture::SimParameters parameters;
     auto rig = OpenSimRig({.name = "test", .camera_uri = "sim:rift-s-like", .seed = 5}, parameters,
@@ -47,11 +57,7 @@ class DriftStep : public testing::Test {
     };
     capture::MakeRestless(*rig, clock, parameters.sensor.bias_dn, fault);
     if (photodiode) capture::AddPhotodiode(*rig, clock, photodiode, 0.5);
-    capture::PlanOptions plan;
-    plan.levels = 9;
-    plan.dark_repeats = plan.flat_repeats = 4;
-    plan.reference_every = reference_every;
-    const auto report = RecordPlan(*rig, *capture::MakeGreyPlan(plan), folder_.path() / name, {});
+    const auto report = RecordPlan(*rig, plan, folder_.path() / name, {});
     EXPECT_TRUE(report.ok()) << report.status();
     return *capture::RecordingReader::Open(folder_.path() / name);
   }
@@ -111,6 +117,39 @@ TEST_F(DriftStep, LevelsAreCorrectedToTheMiddleOfTheRecording) {
   EXPECT_THAT(corrected.warnings, Contains(HasSubstr("drifted")));
   EXPECT_THAT(corrected.reference.reduced.luminance.image.history,
               Contains(HasSubstr("CorrectDrift(order 1")));
+}
+
+// Without the references after the fourth level.
+capture::CapturePlan WithEarlyReferencesAlone() {
+  capture::PlanOptions options;
+  options.levels = 9;
+  options.dark_repeats = options.flat_repeats = 4;
+  options.reference_every = 1;
+  capture::CapturePlan plan = *capture::MakeGreyPlan(options);
+  int seen = 0;
+  std::string last;
+  std::erase_if(plan.captures, [&](const CaptureSpec& spec) {
+    const bool begins = spec.series == capture::kReferenceSeries && last != spec.series;
+    last = spec.series;
+    seen += begins ? 1 : 0;
+    return spec.series == capture::kReferenceSeries && seen > 5;
+  });
+  return plan;
+}
+
+TEST_F(DriftStep, LevelsBeyondItsReadingsAreSaidAndUncertain) {
+  const auto recording = Record("early references", 0.08, WithEarlyReferencesAlone());
+  ASSERT_EQ(MeasureDrift(*recording)->drift.order, 1);
+  const auto early = Reduce(*recording);
+  EXPECT_THAT(early.warnings, Contains(HasSubstr("of 9 levels were shown beyond")));
+  const auto amid = Reduce(*Record("references", 0.08));
+  EXPECT_THAT(amid.warnings, Not(Contains(HasSubstr("beyond"))));
+  const auto most_uncertain = [](const MeasuredLevels& levels) {
+    double most = 0;
+    for (const auto& share : levels.shares) most = std::max(most, share.drift_relative_sigma);
+    return most;
+  };
+  EXPECT_GT(most_uncertain(early), 1.5 * most_uncertain(amid));
 }
 
 TEST_F(DriftStep, ItsUncertaintyEntersEveryReadingAndNotTheScale) {

@@ -14,7 +14,7 @@ namespace {
 constexpr double kStep = 1.15;     // from one reach tried to the next
 constexpr int kMostSteps = 24;     // down to a thirtieth
 constexpr int kRisesToEnd = 2;     // in a row: the least lies behind
-constexpr double kMoreLikely = 9;  // of chi-square: 3 standard deviations
+constexpr double kMoreLikely = 9;  // of chi-square over what it is at its least: 3 sigma
 constexpr int kMostRefinements = 12;
 constexpr double kLeastMove = 1e-4;  // of the reach
 constexpr double kRefinedFrom = 1.01;
@@ -120,7 +120,9 @@ absl::StatusOr<ScatterFit> FindReach(const ScatterFit& widest, const FitAtReach&
     }
     last = *std::move(fit);
   }
-  const bool more_likely = bracket.least.chi_square < widest.chi_square - kMoreLikely;
+  const ScatterFit& least = bracket.least;
+  const double chance = kMoreLikely * ExcessScatter(least.chi_square, least.degrees_of_freedom);
+  const bool more_likely = least.chi_square < widest.chi_square - chance;
   if (!more_likely || rises == 0) return widest;
   return FitWithin(std::move(bracket), fit_at);
 }
@@ -140,6 +142,7 @@ absl::StatusOr<ScatterFit> RefineReach(const ScatterFit& near, const FitAtReach&
     far = std::exchange(least, next);
     EYEBOX_ASSIGN_OR_RETURN(next, fit_at(Reach(least) + (down ? -step : step), least));
   }
+  least.termination += "; its reach was still moving and has no uncertainty";
   return least;
 }
 

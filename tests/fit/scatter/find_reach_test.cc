@@ -77,6 +77,7 @@ TEST(FindReach, AMisfitOfAnotherKindIsNotTakenForTheReach) {
   const auto found = FitScatter(series, Finding());
   ASSERT_TRUE(found.ok()) << found.status();
   EXPECT_GT(found->chi_square, 3 * found->degrees_of_freedom);
+  EXPECT_EQ(found->kernel.reach_deg, 60);
   EXPECT_NEAR(found->kernel.tail_share, 0.05, 4 * found->parameters[kTailShare].sigma);
 }
 

@@ -45,7 +45,7 @@ class DriftStep : public testing::Test {
   }
 
   std::unique_ptr<capture::RecordingReader> Record(const std::string& name, double lost_per_s,
-                                                   const capture::CapturePlan& plan,
+                                                   const CapturePlan& plan,
                                                    const capture::LightAt& photodiode = {}) {
     ManualClock clock;
     capture::SimParameters parameters;
@@ -120,12 +120,12 @@ TEST_F(DriftStep, LevelsAreCorrectedToTheMiddleOfTheRecording) {
 }
 
 // Without the references after the fourth level.
-capture::CapturePlan WithEarlyReferencesAlone() {
+CapturePlan WithEarlyReferencesAlone() {
   capture::PlanOptions options;
   options.levels = 9;
   options.dark_repeats = options.flat_repeats = 4;
   options.reference_every = 1;
-  capture::CapturePlan plan = *capture::MakeGreyPlan(options);
+  CapturePlan plan = *capture::MakeGreyPlan(options);
   int seen = 0;
   std::string last;
   std::erase_if(plan.captures, [&](const CaptureSpec& spec) {

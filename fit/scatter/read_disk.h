@@ -20,7 +20,7 @@ struct DiskReadingOptions {
   double ring_guard_px = 3;  // away from the edge, where the core blurs it
   // What the model leaves out (g between its rings, light beside the image), relative to each
   // reading. It also stands for the flat's error in rings of the same radius, which images share.
-  double model_relative_sigma = 0.00015;
+  double model_relative_sigma = 0.0002;
 
   // Errors: InvalidArgument naming the option.
   absl::Status Validate() const;

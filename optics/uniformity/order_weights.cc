@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "opencv2/core.hpp"
 #include "opencv2/core/optim.hpp"

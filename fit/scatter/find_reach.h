@@ -16,7 +16,8 @@ using FitAtReach =
 // From a fit that the readings contradict to the reach with the least chi-square below its own, if
 // one is more likely by 3 standard deviations; else the same fit comes back, its reach held. The
 // standard uncertainty of the reach, from the curvature of chi-square there, enters the covariance
-// of all parameters. Errors: those of `fit_at`.
+// of all parameters. A reach that no fit converges with ends the search downwards. Errors: those of
+// `fit_at` close to the least.
 absl::StatusOr<ScatterFit> FindReach(const ScatterFit& widest, const FitAtReach& fit_at);
 
 // The same from a fit of nearly the same readings, whose reach was found.

@@ -1,7 +1,7 @@
 #include "optics/uniformity/cross_validate.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
+#include <limits>
 #include <optional>
 
 #include "absl/strings/str_cat.h"
@@ -14,32 +14,21 @@ namespace {
 
 constexpr int kFolds = 5;
 constexpr int kLongestSide = 384;
-constexpr double kLeastCondition = 1e-13;
 constexpr int kIntervals[] = {1, 2, 3, 4, 6, 8, 12, 16};
 
 // Prediction of each class from the others, of the first `terms` functions; nullopt where they do
 // not determine it. Penalties: one for each of them, or none.
 std::optional<double> HeldOutChi2(const std::vector<NormalEquations>& folds,
-                                  const NormalEquations& all, Eigen::Index terms,
+                                  const NormalEquations& all, size_t terms,
                                   const std::vector<double>& penalties = {}) {
   double chi2 = 0;
   for (const NormalEquations& fold : folds) {
     NormalEquations rest = all;
     rest -= fold;
-    if (rest.pixels < static_cast<size_t>(terms)) return std::nullopt;
-    const auto n = static_cast<Eigen::Index>(rest.right_side.size());
-    Eigen::Map<Eigen::MatrixXd> matrix(rest.matrix.data(), n, n);
-    for (size_t i = 0; i < penalties.size(); ++i) {
-      matrix.diagonal()(static_cast<Eigen::Index>(i)) += penalties[i];
-    }
-    const Eigen::Map<const Eigen::VectorXd> right_side(rest.right_side.data(), n);
-    const Eigen::LDLT<Eigen::MatrixXd> factors(matrix.topLeftCorner(terms, terms));
-    if (factors.info() != Eigen::Success || !factors.isPositive() ||
-        factors.rcond() < kLeastCondition) {
-      return std::nullopt;
-    }
-    const Eigen::VectorXd solution = factors.solve(right_side.head(terms));
-    chi2 += std::max(fold.Chi2({solution.data(), static_cast<size_t>(terms)}), 0.0);
+    if (rest.pixels < terms) return std::nullopt;
+    const auto solution = Minimise(rest, terms, penalties);
+    if (!solution) return std::nullopt;
+    chi2 += std::max(fold.Chi2(*solution), 0.0);
   }
   return chi2 / static_cast<double>(all.pixels);
 }
@@ -73,8 +62,7 @@ void ValidatePolynomials(const MeasuredImage& image, FieldChoice& choice) {
   const NormalEquations all = SumOf(folds);
   std::vector<CrossValidated>& models = choice.polynomials;
   for (int order = 0; order <= kLargestOrder; ++order) {
-    const auto terms = static_cast<Eigen::Index>(
-        FieldBasis(FieldModel::kPolynomial, order, image.size()).Terms().size());
+    const size_t terms = FieldBasis(FieldModel::kPolynomial, order, image.size()).Terms().size();
     const auto chi2 = HeldOutChi2(folds, all, terms);
     if (!chi2) break;
     models.push_back({FieldModel::kPolynomial, order, *chi2});
@@ -84,9 +72,10 @@ void ValidatePolynomials(const MeasuredImage& image, FieldChoice& choice) {
   if (choice.weighted.size < kLeastWeightedOrder) return;
   const FieldBasis weighted(FieldModel::kPolynomial, choice.weighted.size, image.size());
   const NormalEquations equations = FirstOf(all, weighted.Terms().size());
-  const auto chi2 = HeldOutChi2(folds, all, static_cast<Eigen::Index>(weighted.Terms().size()),
-                                OrderPenalties(equations, weighted));
-  if (chi2) choice.weighted.held_out_chi2 = *chi2;
+  const auto chi2 =
+      HeldOutChi2(folds, all, weighted.Terms().size(), OrderPenalties(equations, weighted));
+  // Penalties only make it better determined than the same order without them, which it is.
+  choice.weighted.held_out_chi2 = chi2.value_or(std::numeric_limits<double>::infinity());
 }
 
 std::vector<CrossValidated> ValidateSplines(const MeasuredImage& image) {
@@ -94,8 +83,7 @@ std::vector<CrossValidated> ValidateSplines(const MeasuredImage& image) {
   for (const int intervals : kIntervals) {
     const FieldBasis basis(FieldModel::kSpline, intervals, image.size());
     const auto folds = SumImage(image, basis, kFolds);
-    const auto chi2 =
-        HeldOutChi2(folds, SumOf(folds), static_cast<Eigen::Index>(basis.Terms().size()));
+    const auto chi2 = HeldOutChi2(folds, SumOf(folds), basis.Terms().size());
     if (!chi2) break;
     models.push_back({FieldModel::kSpline, intervals, *chi2});
   }

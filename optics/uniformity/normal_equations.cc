@@ -1,14 +1,16 @@
 #include "optics/uniformity/normal_equations.h"
 
-#include <Eigen/Core>
+#include <Eigen/Dense>
 #include <algorithm>
 #include <functional>
+#include <utility>
 
 namespace eyebox::optics {
 namespace {
 
 // Neighbours in x and in y are of different classes.
 constexpr int kStepPerRow = 2;
+constexpr double kLeastCondition = 1e-13;
 
 // Sums of one row over x: the functions separate, so that the sums over y need only these.
 struct RowSums {
@@ -61,6 +63,38 @@ void AddRow(const RowSums& row, const SideValues& side, const FieldBasis& basis,
   sums.pixels += row.pixels;
 }
 
+// Scaled to ones on the diagonal, since penalties differ by many orders of magnitude.
+struct Factors {
+  Eigen::VectorXd unit;
+  Eigen::LDLT<Eigen::MatrixXd> scaled;
+};
+
+std::optional<Factors> Factorise(const NormalEquations& equations, size_t terms,
+                                 const std::vector<double>& penalties) {
+  const auto n = static_cast<Eigen::Index>(equations.right_side.size());
+  const auto first = static_cast<Eigen::Index>(terms);
+  Eigen::MatrixXd matrix =
+      Eigen::Map<const Eigen::MatrixXd>(equations.matrix.data(), n, n).topLeftCorner(first, first);
+  for (size_t i = 0; i < penalties.size(); ++i) {
+    matrix.diagonal()(static_cast<Eigen::Index>(i)) += penalties[i];
+  }
+  Factors factors;
+  factors.unit = matrix.diagonal().cwiseSqrt().cwiseInverse();
+  if (!factors.unit.allFinite()) return std::nullopt;
+  factors.scaled.compute(factors.unit.asDiagonal() * matrix * factors.unit.asDiagonal());
+  const bool determined = factors.scaled.info() == Eigen::Success && factors.scaled.isPositive() &&
+                          factors.scaled.rcond() >= kLeastCondition;
+  return determined ? std::optional(std::move(factors)) : std::nullopt;
+}
+
+std::vector<double> CoefficientsOf(const NormalEquations& equations, const Factors& factors) {
+  const Eigen::Map<const Eigen::VectorXd> right_side(equations.right_side.data(),
+                                                     factors.unit.size());
+  const Eigen::VectorXd coefficients =
+      factors.unit.cwiseProduct(factors.scaled.solve(factors.unit.cwiseProduct(right_side)));
+  return {coefficients.begin(), coefficients.end()};
+}
+
 }  // namespace
 
 NormalEquations& NormalEquations::operator+=(const NormalEquations& other) {
@@ -88,6 +122,24 @@ double NormalEquations::Chi2(std::span<const double> coefficients) const {
     chi2 += coefficients[i] * row;
   }
   return chi2;
+}
+
+std::optional<std::vector<double>> Minimise(const NormalEquations& equations, size_t terms,
+                                            const std::vector<double>& penalties) {
+  const auto factors = Factorise(equations, terms, penalties);
+  if (!factors) return std::nullopt;
+  return CoefficientsOf(equations, *factors);
+}
+
+std::optional<Minimum> MinimiseWithInverse(const NormalEquations& equations,
+                                           const std::vector<double>& penalties) {
+  const auto factors = Factorise(equations, equations.right_side.size(), penalties);
+  if (!factors) return std::nullopt;
+  const Eigen::MatrixXd inverse =
+      factors->unit.asDiagonal() *
+      factors->scaled.solve(Eigen::MatrixXd(factors->unit.asDiagonal()));
+  return Minimum{CoefficientsOf(equations, *factors),
+                 {inverse.data(), inverse.data() + inverse.size()}};
 }
 
 std::vector<NormalEquations> SumImage(const MeasuredImage& image, const FieldBasis& basis,

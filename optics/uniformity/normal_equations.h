@@ -3,6 +3,7 @@
 #define EYEBOX_OPTICS_UNIFORMITY_NORMAL_EQUATIONS_H_
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,6 +29,21 @@ struct NormalEquations {
 // that of all pixels.
 std::vector<NormalEquations> SumImage(const MeasuredImage& image, const FieldBasis& basis,
                                       int folds);
+
+// Coefficients of the first `terms` functions with the least Chi2() plus penalty times square;
+// penalties: one for each of them, or none. nullopt where the matrix does not determine them: not
+// positive, or a reciprocal condition below 1e-13.
+std::optional<std::vector<double>> Minimise(const NormalEquations& equations, size_t terms,
+                                            const std::vector<double>& penalties);
+
+struct Minimum {
+  std::vector<double> coefficients;
+  std::vector<double> inverse;  // [n, n], symmetric: of the matrix with its penalties
+};
+
+// The same of all functions.
+std::optional<Minimum> MinimiseWithInverse(const NormalEquations& equations,
+                                           const std::vector<double>& penalties);
 
 }  // namespace eyebox::optics
 

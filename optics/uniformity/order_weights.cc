@@ -102,7 +102,7 @@ cv::Mat1d MostLikely(const Measured& measured) {
     for (const double kink : kFirstKinks) {
       cv::Mat1d x = (cv::Mat1d(1, 3) << 0.0, decay, std::log(noise) + kink);
       const double found = solver->minimize(x);
-      if (found >= least) continue;
+      if (!best.empty() && !(found < least)) continue;
       least = found;
       best = x.clone();
     }

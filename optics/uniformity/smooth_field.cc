@@ -81,7 +81,6 @@ std::vector<SideValues> Columns(const FieldBasis& basis, int width_px) {
 }
 
 constexpr size_t kMost = kMostFunctions;
-constexpr double kLeastCondition = 1e-13;
 
 // The field along one row is a sum over the functions in x alone, and so is its variance over pairs
 // of them: what each row costs besides a few products a pixel.
@@ -201,22 +200,14 @@ absl::StatusOr<Solution> Solve(const NormalEquations& equations,
                                const std::vector<double>& penalties) {
   const auto n = static_cast<Eigen::Index>(equations.right_side.size());
   const Eigen::Map<const Eigen::MatrixXd> matrix(equations.matrix.data(), n, n);
-  Eigen::MatrixXd penalised = matrix;
-  for (size_t i = 0; i < penalties.size(); ++i) {
-    penalised.diagonal()(static_cast<Eigen::Index>(i)) += penalties[i];
-  }
-  // To ones on the diagonal, since penalties differ by many orders of magnitude.
-  const Eigen::VectorXd unit = penalised.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LDLT<Eigen::MatrixXd> factors(unit.asDiagonal() * penalised * unit.asDiagonal());
-  if (!unit.allFinite() || factors.info() != Eigen::Success || !factors.isPositive() ||
-      factors.rcond() < kLeastCondition) {
+  const auto minimum = MinimiseWithInverse(equations, penalties);
+  if (!minimum) {
     return Rejected("smooth field", "the valid pixels do not determine it",
                     "lower the order, or record more of the field");
   }
   Solution solution;
-  solution.inverse = unit.asDiagonal() * factors.solve(Eigen::MatrixXd(unit.asDiagonal()));
-  const Eigen::Map<const Eigen::VectorXd> right_side(equations.right_side.data(), n);
-  solution.coefficients = unit.cwiseProduct(factors.solve(unit.cwiseProduct(right_side)));
+  solution.inverse = Eigen::Map<const Eigen::MatrixXd>(minimum->inverse.data(), n, n);
+  solution.coefficients = Eigen::Map<const Eigen::VectorXd>(minimum->coefficients.data(), n);
   solution.chi2 =
       std::max(equations.Chi2({solution.coefficients.data(), equations.right_side.size()}), 0.0);
   solution.functions =

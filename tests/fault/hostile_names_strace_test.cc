@@ -83,6 +83,7 @@ TEST(HostileNamesUnderStrace, NoFileOutsideTheStoreIsOpened) {
     const bool inside = path.empty() || path.starts_with((folder / "data").string()) ||
                         path.starts_with((folder / "state").string()) ||
                         path.starts_with("/proc/") || path.starts_with("/sys/") ||
+                        path == "/dev/urandom" ||                  // of the libraries, once
                         path.starts_with("/usr/share/zoneinfo/");  // of the log's times
     EXPECT_TRUE(inside) << line;
   }

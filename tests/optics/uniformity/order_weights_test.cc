@@ -67,7 +67,7 @@ struct Accuracy {
 };
 
 TEST(OrderWeights, NearerToTheTruthThanTheBestSingleOrderAndHonest) {
-  Accuracy weighted, cut;
+  Accuracy weighted, cut, larger;
   for (uint64_t seed = 1; seed <= 30; ++seed) {
     const MeasuredImage image = Field(Lens, kNoise, kNoise, seed);
     const auto choice = CrossValidate(image);
@@ -79,6 +79,11 @@ TEST(OrderWeights, NearerToTheTruthThanTheBestSingleOrderAndHonest) {
     EXPECT_GT(one->effective_functions, 6);
     weighted.Add(*one, Lens);
     cut.Add(*other, Lens);
+    // What it takes to make the bias small beside the sigmas.
+    const int above = std::min(choice->polynomial.size + 2, kLargestOrder);
+    const auto honest = FitSmoothField(image, FieldModel::kPolynomial, above);
+    ASSERT_TRUE(honest.ok()) << honest.status();
+    larger.Add(*honest, Lens);
   }
   const auto print = [](const char* name, const Accuracy& of) {
     std::printf("%s: rms error %.4f, rms pull %.3f, 95 %% cover %.1f %%\n", name,
@@ -87,7 +92,9 @@ TEST(OrderWeights, NearerToTheTruthThanTheBestSingleOrderAndHonest) {
   };
   print("weighted orders", weighted);
   print("best single order", cut);
+  print("two orders above", larger);
   EXPECT_LT(weighted.error_squares, cut.error_squares);
+  EXPECT_LT(weighted.error_squares, larger.error_squares);
   EXPECT_NEAR(weighted.covered / weighted.pixels, 0.95, 0.025);
   EXPECT_NEAR(std::sqrt(weighted.pull_squares / weighted.pixels), 1, 0.12);
   EXPECT_LT(cut.covered / cut.pixels, 0.92) << "else nothing is shown here";
@@ -134,6 +141,16 @@ TEST(OrderWeights, AtTheExtremesAllStaysFinite) {
         EXPECT_NEAR(values.at(x, y), 100 * g(U(x), V(y)), 5 * sigmas.at(x, y) + 2e-5);
       }
     }
+  }
+}
+
+TEST(OrderWeights, ThePredictionOfTheWeightedIsItsOwnHoweverSmallTheCoefficients) {
+  for (const double noise : {1e-5, kNoise}) {
+    const auto choice = CrossValidate(Field(Quartic, noise, noise, 8));
+    ASSERT_TRUE(choice.ok()) << choice.status();
+    EXPECT_EQ(choice->weighted.size, kLargestOrder);
+    EXPECT_LT(choice->weighted.held_out_chi2, choice->polynomials.back().held_out_chi2);
+    EXPECT_LT(choice->weighted.held_out_chi2, choice->polynomial.held_out_chi2 + 0.005);
   }
 }
 
